@@ -2,6 +2,7 @@
 #include "filters/diagnosis/diagnose.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +18,6 @@
 #include "filters/diagnosis/report/left_out.h"
 #include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/series.h"
 #include "filters/diagnosis/report/written_model.h"
 #include "filters/diagnosis/residual/dead_zone.h"
@@ -40,12 +40,12 @@ class Run {
  public:
   Run(const PreparedRecords& prepared, const DiagnoseOptions& options)
       : records_(prepared.fitted),
-        ramps_(prepared.without_ramps.ramps),
         lines_of_a_ramp_(prepared.without_ramps.remark),
         options_(options),
         earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
         data_(cut_to_blocks(prepared.without_ramps.records)),
-        errors_(even_errors(records_, data_.grid.sample_s)) {}
+        errors_(even_errors(records_, data_.grid.sample_s)),
+        of_samples_(prepared.without_ramps.ramps) {}
 
   Diagnosis run() {
     refuse_constant(records_);
@@ -71,9 +71,7 @@ class Run {
   void look_at_channels() {
     for (const Record& record : records_) result_.samples += record.time_s.size();
     result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
-    std::vector<std::string> ramps;
-    for (const RampFit& ramp : ramps_) ramps.push_back(ramp.found.effect.channel);
-    say(unused_channels(records_, data_, ramps));
+    say(unused_channels(records_, data_, of_samples_));
     for (auto& each : mark_motion(records_, data_, options_.allow_motion_channels)) say(std::move(each));
     reconstructed_ = with_reconstructed_channels(data_);
   }
@@ -93,27 +91,26 @@ class Run {
         each.candidate.first_reading = FirstReading::kSettlingShown;
   }
 
-  // Subtracts the ramps and the effects of the search from the errors.
+  // Subtracts the effects from the errors.
   void subtract_found() {
-    const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     result_.effects.clear();
-    for (const Effect& effect : effects_of(data_, chosen, found_.coefficients, options_.axis))
-      result_.effects.emplace_back().effect = effect;
-    for (const RampFit& ramp : ramps_) result_.effects.push_back(ramp.found);
+    for (const Chosen& each : found_.chosen)
+      result_.effects.emplace_back().effect =
+          effect_with(data_, each.candidate, each.coefficient, options_.axis);
+    for (const FoundEffect& each : of_samples_) result_.effects.push_back(each);
     result_.ranges = ranges_of(data_, result_.effects);
-    const Eigen::RowVectorXd means = corrected_means();
-    const double left = means[0] - means.tail(means.size() - 1).dot(found_.coefficients);
+    const Eigen::VectorXd means = corrected_means();
+    const double left = means[0] - means.tail(means.size() - 1).dot(coefficients_of(found_.chosen));
     if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", left, 0.0, "rad/s"};
     result_.means.clear();
     subtract_effects(records_, data_, found_, result_, errors_);
   }
 
-  // Means of the error and of the corrected effects, by column of design().
-  [[nodiscard]] Eigen::RowVectorXd corrected_means() const {
-    const std::vector<Candidate> chosen = candidates_of(found_.chosen);
-    Eigen::RowVectorXd means = means_of(data_, chosen);
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-      if (!chosen[i].corrected()) means[column_of(data_.grid, i)] = 0.0;
+  // Means of the error and of the effects, zero for those that are not corrected.
+  [[nodiscard]] Eigen::VectorXd corrected_means() const {
+    Eigen::VectorXd means = means_of(data_, candidates_of(found_.chosen));
+    for (std::size_t i = 0; i < found_.chosen.size(); ++i)
+      if (!found_.chosen[i].candidate.corrected()) means[static_cast<Eigen::Index>(i) + 1] = 0.0;
     return means;
   }
 
@@ -124,33 +121,28 @@ class Run {
     for (Alternative& other : found_.alternatives) other.of -= other.of > at ? 1 : 0;
     const Columns columns = design(reconstructed_, candidates_of(found_.chosen));
     found_.noise = fit_noise(reconstructed_.grid, columns, found_.noise.shape);
-    found_.coefficients = solve(reconstructed_.grid, found_.noise.shape, columns, &found_.covariance);
+    fit_coefficients(reconstructed_, found_);
   }
 
   // Before the search, which would explain part of it by a nonlinearity.
   void separate_dead_zone() {
     if (data_.reference < 0 || data_.grid.dwells || data_.grid.noisy_reference) return;
-    FoundZone found;
-    for (const Record& record : records_)
-      found.rates.push_back(on_even_grid(record, data_.grid.sample_s, record.reference_radps));
-    const auto zone = find_dead_zone(errors_, found.rates, data_.grid.white_variance, options_.significance);
-    if (!zone) return;
-    found.zone = *zone;
-    found.channel = data_.channels[static_cast<std::size_t>(data_.reference)].name;
-    zone_ = std::move(found);
-    take_out(*zone, zone_->rates, data_.grid, errors_);
-    reconstructed_.grid.error = data_.grid.error;
+    const std::string& channel = data_.channels[static_cast<std::size_t>(data_.reference)].name;
+    if (auto zone = take_out_dead_zone(records_, channel, options_.significance, data_.grid, errors_)) {
+      of_samples_.push_back(std::move(*zone));
+      reconstructed_.grid.error = data_.grid.error;
+    }
   }
 
   // Looks for lines in the residual of the effects, then repeats the search without them.
   void separate_lines() {
     if (data_.grid.dwells) return;
     subtract_found();
-    lines_ = coherent_lines(errors_, data_.grid.sample_s, options_.significance * kOfLines);
     if (std::ranges::any_of(errors_, [](const auto& one) { return one.before->size() > kMostTransformed; }))
       say("lines are sought in the first " + std::to_string(kMostTransformed) + " samples of a record");
-    if (lines_.empty()) return;
-    take_out(lines_, data_.grid, errors_);
+    std::vector<FoundEffect> lines = take_out_lines(options_.significance * kOfLines, data_.grid, errors_);
+    if (lines.empty()) return;
+    std::ranges::move(lines, std::back_inserter(of_samples_));
     reconstructed_.grid.error = data_.grid.error;
     search();
   }
@@ -179,13 +171,12 @@ class Run {
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
     report_effects();
-    const Eigen::RowVectorXd means = corrected_means();
+    const Eigen::VectorXd means = corrected_means();
     if (data_.reference >= 0)
       name_bias(data_.grid, joint_, means, options_.axis, result_);
     else
-      result_.means = means_of_corrections(result_.effects, result_.ranges,
-                                           means.tail(means.size() - column_of(data_.grid, 0)));
-    result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), parts_.size());
+      result_.means = means_of_corrections(result_.effects, result_.ranges, means.tail(means.size() - 1));
+    result_.covariance = covariance_of(result_.effects, joint_, data_.grid, parts_.size());
     subtract_effects(records_, data_, found_, result_, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
@@ -209,12 +200,14 @@ class Run {
   }
 
   void report_effects() {
-    Findings findings = findings_of(data_, reconstructed_, found_, joint_, options_.axis);
+    Findings findings = findings_of(data_, found_, joint_, options_.axis);
     result_.effects = std::move(findings.effects);
     result_.indistinguishable = std::move(findings.pairs);
     result_.noise_posterior = joint_.noise;
-    for (FoundEffect& each : sample_effects(ramps_, zone_, lines_, errors_, options_.axis))
-      result_.effects.push_back(std::move(each));
+    for (const FoundEffect& each : of_samples_) {
+      result_.effects.push_back(each);
+      result_.effects.back().effect.axis = options_.axis;
+    }
     result_.ranges = ranges_of(data_, result_.effects);
     parts_ = std::move(findings.parts);
   }
@@ -229,7 +222,7 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained = describe_rest(records_, errors_, lines_, found_.noise, data_.grid,
+    result_.unexplained = describe_rest(records_, errors_, of_samples_, found_.noise, data_.grid,
                                         options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
@@ -252,15 +245,13 @@ class Run {
   }
 
   const std::vector<Record>& records_;
-  const std::vector<RampFit>& ramps_;
   const std::string& lines_of_a_ramp_;  // remark, or empty
   const DiagnoseOptions& options_;
   const EarthRateOptions earth_;
   BlockData data_;           // without ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
-  std::optional<FoundZone> zone_;
-  std::vector<LineOf> lines_;
+  std::vector<FoundEffect> of_samples_;  // ramps, dead zone, lines: found outside the joint fit
   SearchResult found_;
   bool searched_ = false;
   JointFit joint_;

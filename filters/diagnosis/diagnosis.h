@@ -45,7 +45,7 @@ struct FoundEffect {
 };
 
 struct Indistinguishable {
-  std::vector<Effect> effects;  // the first is the one that the model uses
+  std::vector<Effect> effects;  // the first is the one that the model uses, the others have no coefficient
   double correlation = 0.0;     // of the regressors after whitening
   std::string separate_by;      // capture that would distinguish them
 };
@@ -62,9 +62,9 @@ struct Unexplained {
 
 // Heading error of the next capture after correction by the model. The bias is the mean over the first
 // `aligned_s` seconds at rest; the angle is integrated from then on. Promised is the root of the error's
-// expected square. It includes the noise with its uncertainty, parameter errors (time constants too), effects
-// outside their fitted range, and known but uncorrected effects: a line at any phase, a continuing ramp. Not
-// included: what the diagnosis did not detect, and steps.
+// expected square. It includes the noise with its uncertainty, parameter errors (time constants too), and known
+// but uncorrected effects: a line at any phase, hysteresis, a dead zone. Not included: what the diagnosis did not
+// detect, steps, and channels outside their fitted range.
 struct HeadingPrediction {
   double aligned_s = 0.0;
   std::vector<double> after_s;    // times after the end of the alignment

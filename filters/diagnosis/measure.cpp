@@ -19,9 +19,9 @@ namespace {
 
 // Reason why the data cannot determine a coefficient; empty if they can.
 std::string missing(const BlockData& data, const std::string& name) {
-  for (const FineChannel& channel : data.channels)
-    if (channel.name == name) return channel.varies ? "" : name + " does not change in the captures";
-  return "the captures have no " + name;
+  const std::optional<std::size_t> channel = data.index_of(name);
+  if (!channel) return "the captures have no " + name;
+  return data.channels[*channel].varies ? "" : name + " does not change in the captures";
 }
 
 struct Named {
@@ -65,12 +65,12 @@ std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) 
 // Advances early channels as the daemon does by waiting.
 void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
   bool any = false;
-  for (const ChannelRange& range : ranges)
-    for (FineChannel& channel : data.channels) {
-      if (!(range.early_s > 0.0) || channel.name != range.channel) continue;
-      undo_delay(data.grid, -range.early_s, channel);
-      any = true;
-    }
+  for (const ChannelRange& range : ranges) {
+    const std::optional<std::size_t> channel = data.index_of(range.channel);
+    if (!(range.early_s > 0.0) || !channel) continue;
+    undo_delay(data.grid, -range.early_s, data.channels[*channel]);
+    any = true;
+  }
   if (any) rebuild_differences(data);
 }
 
@@ -148,9 +148,9 @@ class Measuring {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
     // Without a bias in the model, rates count from the mean that the effects leave.
-    const Eigen::RowVectorXd means = means_of(data_, all());
-    const double rates_from =
-        means[0] - means.tail(means.size() - 1).dot(joint.values.head(means.size() - 1));
+    const Eigen::VectorXd means = means_of(data_, all());
+    const Eigen::Index effects = means.size() - 1;
+    const double rates_from = means[0] - means.tail(effects).dot(joint.values.segment(first, effects));
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {
       Effect effect = effect_of(data_, model_[static_cast<std::size_t>(i)]);
@@ -167,7 +167,7 @@ class Measuring {
         result_.others.push_back(effect);
       }
       found.push_back({effect, 1.0, 0.0, 0.0});
-      result_.means.push_back(means[first + i + 1]);
+      result_.means.push_back(means[i + 1]);
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));
     }

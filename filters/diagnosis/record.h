@@ -42,6 +42,11 @@ struct Record {
   std::vector<Stretch> at_rest;   // in samples, in order; empty: not determined, all
   RecordOrigin origin;            // of time_s
   double since_power_up_s = 0.0;  // at the first sample; 0 if not known: the record is taken to begin there
+
+  // Rate minus reference, if there is one; NaN: missing.
+  [[nodiscard]] double error(std::size_t i) const {
+    return reference_radps.empty() ? rate_radps[i] : rate_radps[i] - reference_radps[i];
+  }
 };
 
 // Values of a channel by name; empty if the record has none.

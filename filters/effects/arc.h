@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "filters/effects/form.h"
@@ -19,9 +18,7 @@ namespace ifog {
 
 // Modulus of the channel's wraps; the period of a harmonic is a fraction of it.
 [[nodiscard]] inline double turn_of(const std::string& channel, double period) {
-  const std::string unit = unit_of(channel);
-  const double turn = unit == "deg" ? 360.0 : unit == "turns" ? 1.0 : 2.0 * std::numbers::pi;
-  const double times = turn / period;
+  const double turn = turn_by_unit(channel), times = turn / period;
   return std::abs(times - std::round(times)) < 1e-6 * times ? turn : period;
 }
 

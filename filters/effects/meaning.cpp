@@ -57,9 +57,7 @@ std::string of_other_axis(const std::string& name, Form form) {
 }
 
 std::string of_angle(const Effect& effect) {
-  const std::string unit = unit_of(effect.channel);
-  const double turn = unit == "deg" ? 360.0 : unit == "turns" ? 1.0 : 2.0 * std::numbers::pi;
-  const long times = std::lround(turn / std::max(effect.period, 1e-300));
+  const long times = std::lround(turn_by_unit(effect.channel) / std::max(effect.period, 1e-300));
   return (times == 1   ? "once"
           : times == 2 ? "twice"
                        : std::to_string(times) + " times") +
@@ -196,9 +194,11 @@ std::string of_rebuilt_ramp(const Effect& effect) {
 
 }  // namespace
 
-bool is_angle_by_unit(std::string_view channel) {
+double turn_by_unit(std::string_view channel) {
   const std::string unit = unit_of(channel);
-  return unit == "rad" || unit == "deg" || unit == "turns";
+  if (unit == "rad") return 2.0 * std::numbers::pi;
+  if (unit == "deg") return 360.0;
+  return unit == "turns" ? 1.0 : 0.0;
 }
 
 Motion motion_of(std::string_view channel) {
@@ -302,7 +302,7 @@ std::string meaning_of(const Effect& effect) {
       return "the rate comes in steps";
     case Form::kCosine:
     case Form::kSine:
-      return kind_of(effect.channel) == ChannelKind::kTemperature ? of_fringe(effect) : of_angle(effect);
+      return turn_by_unit(effect.channel) > 0.0 ? of_angle(effect) : of_fringe(effect);
     default:
       return of_channel(kind_of(effect.channel), *form, effect.channel);
   }

@@ -24,8 +24,8 @@ enum class ChannelKind {
 
 [[nodiscard]] ChannelKind kind_of(std::string_view channel);
 
-// True for degrees, radians or turns.
-[[nodiscard]] bool is_angle_by_unit(std::string_view channel);
+// A whole turn in the unit of an angle: degrees, radians or turns; 0 for other units.
+[[nodiscard]] double turn_by_unit(std::string_view channel);
 
 // Motion of the sensor that a channel senses, by unit and, if that is ambiguous, by name.
 enum class Motion { kNone, kAngle, kRate, kPosition, kVelocity, kAcceleration };

@@ -66,7 +66,7 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.table_y = effect.table_y;
   settings.period = effect.period;
   settings.angle = effect.angle;
-  settings.fringe = is_of_angle(settings.form) && !is_angle_by_unit(effect.channel);
+  settings.fringe = is_of_angle(settings.form) && turn_by_unit(effect.channel) == 0.0;
   settings.half_width = parameter(effect, name_of_width(settings.form));
   return settings;
 }
@@ -86,14 +86,6 @@ ShapeSettings with_shape_settings(const Effect& effect) {
   settings.begins_at_mean = settings.second_time_constant_s > 0.0;
   if (power_of(*form) > 1) settings.half_width = parameter(effect, kCurveReach);
   return settings;
-}
-
-double mean_in_dead_zone(double mean, double variance, double half_width) noexcept {
-  const double reach = std::sqrt(3.0 * std::max(variance, 0.0));  // of a uniform distribution
-  if (!(reach > 1e-9 * half_width)) return std::abs(mean) < half_width ? mean : 0.0;
-  const double low = std::max(mean - reach, -half_width);
-  const double high = std::min(mean + reach, half_width);
-  return high > low ? (high - low) * (high + low) / (4.0 * reach) : 0.0;
 }
 
 Shape::Shape(ShapeSettings settings)

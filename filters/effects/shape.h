@@ -35,10 +35,6 @@ ShapeSettings shape_settings(
     const Effect& effect);  // of the effect's own channel; "product": the linear first factor
 ShapeSettings with_shape_settings(const Effect& effect);  // "product": the second factor
 
-// Mean value of a dead zone over a uniform distribution with this mean and variance, such as a rate that
-// crosses the zone within one average.
-double mean_in_dead_zone(double mean, double variance, double half_width) noexcept;
-
 class Shape {
  public:
   // Throws std::invalid_argument for a lookup without a table, a cosine or sine without a period, a

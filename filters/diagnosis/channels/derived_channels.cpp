@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "filters/effects/meaning.h"
@@ -18,13 +17,6 @@ constexpr double kWholeTurn = 0.9;    // of the period: size of a wrap, and exte
 constexpr double kInsideTurn = 0.95;  // share of the values within the turn
 constexpr double kRounding = 1e-3;    // of the period, beyond its ends
 constexpr double kUnsure = 0.01;      // largest share of steps whose direction is ambiguous
-
-double period_by_unit(const std::string& channel) {
-  const std::string unit = unit_of(channel);
-  if (unit == "rad") return 2.0 * std::numbers::pi;
-  if (unit == "deg") return 360.0;
-  return unit == "turns" ? 1.0 : 0.0;
-}
 
 struct Turn {
   double low = 0.0, high = 0.0;
@@ -74,7 +66,7 @@ void add_difference(const std::string& one, const std::string& other, OwnedRecor
 }  // namespace
 
 double angle_period(const std::string& channel, std::span<const double> values) {
-  const double period = period_by_unit(channel);
+  const double period = turn_by_unit(channel);
   if (!(period > 0.0)) return 0.0;
   const std::optional<Turn> turn = turn_of(values, period);
   if (!turn) return 0.0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/channels/reconstruct.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -60,74 +62,59 @@ std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
   return found;
 }
 
-// Level and slope of an integrated random walk; covariances relative to a reading's variance.
+// What drives the channel between its readings: a random walk of its slope, or of its level.
+enum class Course { kSmooth, kWalk };
+
+// Level and slope; covariance relative to a reading's variance.
 struct State {
-  double level = 0.0, slope = 0.0;
-  double pll = 0.0, pls = 0.0, pss = 0.0;
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 };
 
-void predict(State& s, double d, double drive) {
-  s.level += d * s.slope;
-  const double pll = s.pll + d * (2.0 * s.pls + d * s.pss) + drive * d * d * d / 3.0;
-  const double pls = s.pls + d * s.pss + drive * d * d / 2.0;
-  s.pll = pll;
-  s.pls = pls;
-  s.pss += drive * d;
+Eigen::Matrix2d transition(double d) { return (Eigen::Matrix2d() << 1.0, d, 0.0, 1.0).finished(); }
+
+// d: steps; drive: variance of the walk per step.
+State predicted(const State& s, double d, Course course, double drive) {
+  State ahead{transition(d) * s.value, transition(d) * s.covariance * transition(d).transpose()};
+  if (course == Course::kWalk)
+    ahead.covariance(0, 0) += drive * d;
+  else
+    ahead.covariance +=
+        drive * (Eigen::Matrix2d() << d * d * d / 3.0, d * d / 2.0, d * d / 2.0, d).finished();
+  return ahead;
 }
 
-// Measurement update; returns the innovation and its variance.
-std::pair<double, double> update(State& s, double value) {
-  const double variance = s.pll + 1.0;
-  const double innovation = value - s.level;
-  const double gain_level = s.pll / variance;
-  const double gain_slope = s.pls / variance;
-  s.level += gain_level * innovation;
-  s.slope += gain_slope * innovation;
-  s.pss -= gain_slope * s.pls;
-  s.pls -= gain_level * s.pls;
-  s.pll -= gain_level * s.pll;
-  return {innovation, variance};
+State updated(const State& s, double reading) {
+  const Eigen::Vector2d gain = s.covariance.col(0) / (s.covariance(0, 0) + 1.0);
+  return {s.value + gain * (reading - s.value[0]), s.covariance - gain * s.covariance.row(0)};
 }
 
-// State after the first two readings with a diffuse prior.
-State started(const Reading& a, const Reading& b, double drive) {
-  const double d = b.step - a.step;
+// State after the first two readings, with a diffuse prior of what the course leaves free.
+State started(const Reading& a, const Reading& b, Course course, double drive) {
   State s;
-  s.level = b.value;
-  s.slope = (b.value - a.value) / d;
-  s.pll = 1.0;
-  s.pls = 1.0 / d;
-  s.pss = 2.0 / (d * d) + drive * d / 3.0;
+  s.value[0] = b.value;
+  s.covariance(0, 0) = 1.0;
+  if (course == Course::kWalk) return s;
+  const double d = b.step - a.step;
+  s.value[1] = (b.value - a.value) / d;
+  s.covariance(0, 1) = s.covariance(1, 0) = 1.0 / d;
+  s.covariance(1, 1) = 2.0 / (d * d) + drive * d / 3.0;
   return s;
 }
 
-struct Likelihood {
-  double square = 0.0, determinant = 0.0, count = 0.0;
-  [[nodiscard]] double value() const {
-    return -0.5 * (count * std::log(std::max(square, 1e-300) / count) + determinant);
-  }
-};
-
-// Models of the readings after the second one, so that their likelihoods are comparable.
-enum class Course { kSmooth, kWalk };
-
+// Log-likelihood of the readings after the second one, so that those of the courses are comparable.
 double likelihood(std::span<const Reading> readings, Course course, double drive) {
-  Likelihood sum;
-  State s = started(readings[0], readings[1], drive);
-  if (course == Course::kWalk) s = {readings[1].value, 0.0, 1.0, 0.0, 0.0};
+  double square = 0.0, determinant = 0.0;
+  State s = started(readings[0], readings[1], course, drive);
   for (std::size_t i = 2; i < readings.size(); ++i) {
-    const double d = readings[i].step - readings[i - 1].step;
-    if (course == Course::kSmooth) {
-      predict(s, d, drive);
-    } else {
-      s.pll += drive * d;
-    }
-    const auto [innovation, variance] = update(s, readings[i].value);
-    sum.square += innovation * innovation / variance;
-    sum.determinant += std::log(variance);
-    sum.count += 1.0;
+    s = predicted(s, readings[i].step - readings[i - 1].step, course, drive);
+    const double variance = s.covariance(0, 0) + 1.0;
+    square += std::pow(readings[i].value - s.value[0], 2) / variance;
+    determinant += std::log(variance);
+    s = updated(s, readings[i].value);
   }
-  return sum.value();
+  const auto count = static_cast<double>(readings.size() - 2);
+  return -0.5 * (count * std::log(std::max(square, 1e-300) / count) + determinant);
 }
 
 // Means of readings, as many as allowed, over the whole record, because the spline must follow its few kinks.
@@ -150,57 +137,34 @@ struct Drive {
   double drive, likelihood;
 };
 
-// Most likely ratio, per step, of the slope's (or level's) random walk to the reading variance: search by
-// decades, then within one.
+// Most likely ratio, per step, of the slope's (or level's) random walk to the reading variance: the best decade,
+// then Brent's search around it.
 Drive best_drive(std::span<const Reading> readings, Course course) {
-  double best = 0.0;
-  double most = -std::numeric_limits<double>::infinity();
-  for (int decade = -16; decade <= 4; ++decade) {
-    const double value = likelihood(readings, course, std::pow(10.0, decade));
-    if (value > most) {
-      most = value;
-      best = decade;
-    }
-  }
-  for (const double step : {0.5, 0.25, 0.125}) {
-    for (const double power : {best - step, best + step}) {
-      const double value = likelihood(readings, course, std::pow(10.0, power));
-      if (value > most) {
-        most = value;
-        best = power;
-      }
-    }
-  }
-  return {std::pow(10.0, best), most};
+  const auto lacking = [&](double power) { return -likelihood(readings, course, std::pow(10.0, power)); };
+  double decade = 0.0, least = std::numeric_limits<double>::infinity();
+  for (int power = -16; power <= 4; ++power)
+    if (const double value = lacking(power); value < least) least = value, decade = power;
+  constexpr int kBits = 4;  // an eighth of a decade
+  const auto [power, value] =
+      boost::math::tools::brent_find_minima(lacking, decade - 1.0, decade + 1.0, kBits);
+  return {std::pow(10.0, power), -value};
 }
 
 // Rauch-Tung-Striebel smoother; levels and slopes at the readings.
 std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
+  const auto steps_to = [&](std::size_t i) { return readings[i].step - readings[i - 1].step; };
   std::vector<State> states(readings.size());
-  states[1] = started(readings[0], readings[1], drive);
-  for (std::size_t i = 2; i < readings.size(); ++i) {
-    states[i] = states[i - 1];
-    predict(states[i], readings[i].step - readings[i - 1].step, drive);
-    update(states[i], readings[i].value);
-  }
+  states[1] = started(readings[0], readings[1], Course::kSmooth, drive);
+  for (std::size_t i = 2; i < readings.size(); ++i)
+    states[i] = updated(predicted(states[i - 1], steps_to(i), Course::kSmooth, drive), readings[i].value);
   for (std::size_t i = readings.size() - 1; i-- > 1;) {
-    State ahead = states[i];
-    const double d = readings[i + 1].step - readings[i].step;
-    predict(ahead, d, drive);
     State& s = states[i];
-    const double a = s.pll + d * s.pls;
-    const double b = s.pls + d * s.pss;
-    const double determinant = ahead.pll * ahead.pss - ahead.pls * ahead.pls;
-    const double level = states[i + 1].level - ahead.level;
-    const double slope = states[i + 1].slope - ahead.slope;
-    const double u = (ahead.pss * level - ahead.pls * slope) / determinant;
-    const double v = (ahead.pll * slope - ahead.pls * level) / determinant;
-    s.level += a * u + s.pls * v;
-    s.slope += b * u + s.pss * v;
+    const State ahead = predicted(s, steps_to(i + 1), Course::kSmooth, drive);
+    const Eigen::Matrix2d gain =
+        s.covariance * transition(steps_to(i + 1)).transpose() * ahead.covariance.inverse();
+    s.value += gain * (states[i + 1].value - ahead.value);
   }
-  const double d = readings[1].step - readings[0].step;
-  states[0] = states[1];
-  states[0].level -= d * states[1].slope;
+  states[0].value = transition(-steps_to(1)) * states[1].value;
   return states;
 }
 
@@ -213,8 +177,8 @@ class Spline {
   double at(double step) {
     const Reading &first = readings_.front(), &last = readings_.back();
     while (i_ + 2 < readings_.size() && readings_[i_ + 1].step <= step) ++i_;
-    if (step < first.step) return states_.front().level - (first.step - step) * states_.front().slope;
-    if (step > last.step) return states_.back().level + (step - last.step) * states_.back().slope;
+    if (step < first.step) return (transition(step - first.step) * states_.front().value)[0];
+    if (step > last.step) return (transition(step - last.step) * states_.back().value)[0];
     return between(readings_[i_], states_[i_], readings_[i_ + 1], states_[i_ + 1], step);
   }
 
@@ -223,8 +187,8 @@ class Spline {
     const double d = to.step - from.step;
     const double u = (step - from.step) / d;
     const double rest = 1.0 - u;
-    return a.level * (1.0 + 2.0 * u) * rest * rest + b.level * u * u * (3.0 - 2.0 * u) +
-           d * u * rest * (a.slope * rest - b.slope * u);
+    return a.value[0] * (1.0 + 2.0 * u) * rest * rest + b.value[0] * u * u * (3.0 - 2.0 * u) +
+           d * u * rest * (a.value[1] * rest - b.value[1] * u);
   }
 
   std::span<const Reading> readings_;
@@ -285,19 +249,15 @@ bool stands_still(std::span<const double> readings) {
 
 // The difference of two quantised readings has irregular steps, so it is recomputed.
 void rebuild_differences(BlockData& data) {
-  const auto named = [&](const std::string& name) {
-    return std::ranges::find_if(data.channels,
-                                [&](const FineChannel& channel) { return channel.name == name; });
-  };
   for (FineChannel& channel : data.channels) {
     const ChannelNames names = names_in(channel.name);
     if (names.less.empty()) continue;
-    const auto of = named(names.of);
-    const auto less = named(names.less);
-    if (of == data.channels.end() || less == data.channels.end()) continue;
-    channel.smooth = of->smooth && less->smooth;
+    const std::optional<std::size_t> of = data.index_of(names.of), less = data.index_of(names.less);
+    if (!of || !less) continue;
+    const FineChannel &one = data.channels[*of], &other = data.channels[*less];
+    channel.smooth = one.smooth && other.smooth;
     for (std::size_t k = 0; k < channel.values.size(); ++k)
-      channel.values[k] = of->values[k] - less->values[k];
+      channel.values[k] = one.values[k] - other.values[k];
   }
 }
 

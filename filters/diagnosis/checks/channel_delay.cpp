@@ -17,27 +17,6 @@ constexpr double kDelayFactor = 2.0;  // ratio between the delays tried, which s
 // Required gain of twice the log-likelihood: one in 10^4 by chance after some 30 tries.
 constexpr double kCertainlyDelayed = 24.0;
 
-// Twice the log-likelihood of the model as a function of the channel's delay.
-class Profile {
- public:
-  Profile(const BlockData& data, const std::vector<Candidate>& model, const NoiseShape& shape,
-          std::size_t channel)
-      : trial_(data), model_(model), shape_(shape), channel_(channel), as_logged_(data.channels[channel]) {}
-
-  double at(double delay_s) {
-    trial_.channels[channel_] = as_logged_;
-    undo_delay(trial_.grid, delay_s, trial_.channels[channel_]);
-    return 2.0 * fit_whitened(trial_.grid, shape_, design(trial_, model_)).log_likelihood;
-  }
-
- private:
-  BlockData trial_;
-  const std::vector<Candidate>& model_;
-  const NoiseShape& shape_;
-  std::size_t channel_;
-  FineChannel as_logged_;
-};
-
 }  // namespace
 
 void undo_delay(const BlockGrid& grid, double delay_s, FineChannel& channel) {
@@ -72,20 +51,26 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
   for (std::size_t c = 0; c < data.channels.size() && !grid.dwells; ++c) {
     const auto uses = [&](const Candidate& each) { return each.uses(c); };
     if (static_cast<std::ptrdiff_t>(c) == data.reference || std::ranges::none_of(model, uses)) continue;
-    Profile profile(data, model, shape, c);
-    const double none = profile.at(0.0);
+    // Twice the log-likelihood of the model as a function of the channel's delay.
+    BlockData trial = data;
+    const auto profile = [&](double delay_s) {
+      trial.channels[c] = data.channels[c];
+      undo_delay(grid, delay_s, trial.channels[c]);
+      return 2.0 * fit_whitened(grid, shape, design(trial, model)).log_likelihood();
+    };
+    const double none = profile(0.0);
     double best = 0.0, top = none;
     for (double delay = grid.block_s; delay <= longest; delay *= kDelayFactor)
       for (const double each : {delay, -delay})
-        if (const double value = profile.at(each); value > top) best = each, top = value;
+        if (const double value = profile(each); value > top) best = each, top = value;
     if (top - none < kCertainlyDelayed) continue;
     constexpr int kBits = 9;  // resolution within the bracket
     std::uintmax_t most = 20;
     const auto [delay, lacking] = boost::math::tools::brent_find_minima(
-        [&](double at) { return -profile.at(at); }, std::min(best / kDelayFactor, best * kDelayFactor),
+        [&](double at) { return -profile(at); }, std::min(best / kDelayFactor, best * kDelayFactor),
         std::max(best / kDelayFactor, best * kDelayFactor), kBits, most);
     // The standard deviation of a parabola is where twice the log-likelihood has fallen by one.
-    const double step = 0.1 * std::abs(delay), falls = -lacking - profile.at(delay + step);
+    const double step = 0.1 * std::abs(delay), falls = -lacking - profile(delay + step);
     found.push_back({data.channels[c].name, delay, step / std::sqrt(std::max(falls, 1e-6))});
   }
   return found;

@@ -69,7 +69,7 @@ Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candida
   Eigen::VectorXd change(columns.rows());
   for (Eigen::Index b = 0; b < change.size(); ++b) {
     const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
-    change[b] = centred.row(b).dot(others[held_out] - coefficients.tail(p));
+    change[b] = centred.row(b).dot(others[held_out] - coefficients);
   }
   return change;
 }
@@ -83,9 +83,9 @@ constexpr double kLastingFar = 0.25;
 
 }  // namespace
 
-bool predicts_held_out(const BlockData& data, const Claimed& claimed) {
-  Columns white = design(data, claimed.model);
-  Whitening(data.grid, claimed.noise.shape).apply(white);
+bool predicts_held_out(const BlockData& data, const FittedModel& model) {
+  Columns white = design(data, model.effects);
+  Whitening(data.grid, model.noise.shape).apply(white);
   const Eigen::Index last = white.cols() - 1;
   const Projection others(white.middleCols(1, last - 1));
   Eigen::VectorXd y = white.col(0);
@@ -111,16 +111,16 @@ bool predicts_held_out(const BlockData& data, const Claimed& claimed) {
   return gain > 0.0;
 }
 
-bool step_persists(const BlockData& data, const Claimed& claimed) {
+bool step_persists(const BlockData& data, const FittedModel& model) {
   const BlockGrid& grid = data.grid;
-  const Candidate& step = claimed.model.back();
-  const Columns columns = design(data, claimed.model);
-  const Eigen::VectorXd c = solve(grid, claimed.noise.shape, columns);
+  const Candidate& step = model.effects.back();
+  const Columns columns = design(data, model.effects);
+  const Eigen::VectorXd c = fit_whitened(grid, model.noise.shape, columns).coefficients();
   const Eigen::Index last = columns.cols() - 1;
   // Other steps remain: of two that cancel, neither lasts.
   Eigen::VectorXd taken = c.head(last - 1);
-  for (std::size_t i = 0; i + 1 < claimed.model.size(); ++i)
-    if (claimed.model[i].form == Form::kStep) taken[column_of(grid, i) - 1] = 0.0;
+  for (std::size_t i = 0; i + 1 < model.effects.size(); ++i)
+    if (model.effects[i].form == Form::kStep) taken[column_of(grid, i) - 1] = 0.0;
   const BlockRange& record = grid.records[step.record];
   const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
   std::array<std::vector<double>, 2> level;  // before and after, in order of time

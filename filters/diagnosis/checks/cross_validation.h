@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
@@ -18,22 +17,16 @@ std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& gri
 
 // By block, the change of the corrected effects if coefficients of the other folds are used. Relative to the
 // mean of each record, as otherwise a channel far from zero would step between folds. coefficients: of all
-// blocks, constants first.
+// blocks.
 Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candidate>& effects,
                                 const NoiseShape& shape, const Eigen::VectorXd& coefficients);
 
-// A model whose last effect is on trial, with the noise that belongs to it.
-struct Claimed {
-  const std::vector<Candidate>& model;
-  const NoiseFit& noise;
-};
-
 // True if the last effect's coefficients from the other folds reduce the innovations over all folds.
 // Constants and earlier effects are projected out on all blocks first.
-bool predicts_held_out(const BlockData& data, const Claimed& claimed);
+bool predicts_held_out(const BlockData& data, const FittedModel& model);
 
 // True if the last effect, a step, lasts: the means before and after it differ by it. A shock looks like a
 // step in the innovations, and a temporary change like two.
-bool step_persists(const BlockData& data, const Claimed& claimed);
+bool step_persists(const BlockData& data, const FittedModel& model);
 
 }  // namespace ifog

@@ -55,11 +55,8 @@ const EvenError& longest_of(const std::vector<EvenError>& errors) {
 
 void refuse_constant(const std::vector<Record>& records) {
   for (const Record& record : records) {
-    const auto error = [&](std::size_t i) {
-      return record.rate_radps[i] - (record.reference_radps.empty() ? 0.0 : record.reference_radps[i]);
-    };
     for (std::size_t i = 0; i < record.rate_radps.size(); ++i)
-      if (!(error(i) == error(0))) return;
+      if (!(record.error(i) == record.error(0))) return;
   }
   throw std::invalid_argument(
       "the rate, less the reference if there is one, never changes; expected measurements");

@@ -10,28 +10,22 @@
 namespace ifog {
 namespace {
 
-// Regression of measured rate minus reference on a constant and all moving references, in the given order.
-// Empty if not possible.
-Eigen::VectorXd shares_of(std::span<const double> measured, std::span<const double> reference,
-                          const std::vector<std::span<const double>>& along) {
-  std::vector<std::vector<double>> columns(2, std::vector<double>(measured.size(), 1.0));
-  for (std::size_t i = 0; i < measured.size(); ++i) columns[0][i] = measured[i] - reference[i];
-  for (const std::span<const double> each : along) columns.emplace_back(each.begin(), each.end());
-  const SeriesFit fit = least_squares(columns, complete_rows(columns));
-  if (fit.rows < 10 * columns.size()) return {};
-  return fit.coefficients.tail(static_cast<Eigen::Index>(along.size()));
-}
-
+// The measured rate without its regression of measured rate minus reference on all moving references; unchanged if
+// there are too few samples.
 Samples less_its_own(std::span<const double> measured, std::span<const double> reference,
                      const std::vector<std::span<const double>>& along) {
-  Samples corrected(measured);
-  const Eigen::VectorXd shares = shares_of(measured, reference, along);
-  if (shares.size() == 0) return corrected;
-  for (std::size_t a = 0; a < along.size(); ++a) {
-    const double share = shares[static_cast<Eigen::Index>(a)];
-    for (std::size_t i = 0; i < corrected.size(); ++i) corrected[i] -= share * along[a][i];
-  }
-  return corrected;
+  const auto vector = [](std::span<const double> values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  const auto axes = static_cast<Eigen::Index>(along.size());
+  Columns columns = Columns::Ones(vector(measured).size(), 2 + axes);
+  columns.col(0) = vector(measured) - vector(reference);
+  for (Eigen::Index a = 0; a < axes; ++a) columns.col(2 + a) = vector(along[static_cast<std::size_t>(a)]);
+  const std::vector<Eigen::Index> rows = complete_rows(columns);
+  if (rows.size() < 10 * static_cast<std::size_t>(columns.cols())) return Samples(measured);
+  const Eigen::VectorXd shares = least_squares(columns, rows).coefficients.tail(axes);
+  const Eigen::VectorXd corrected = vector(measured) - columns.rightCols(axes) * shares;
+  return Samples(std::span<const double>(corrected.data(), measured.size()));
 }
 
 // The other axes as records, each with its reference aligned.

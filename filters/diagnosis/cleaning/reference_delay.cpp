@@ -33,7 +33,7 @@ constexpr std::size_t kLeast = 200;                 // fewest steps
 constexpr int kRounds = 40;
 constexpr double kSettled = 1e-5;       // in steps
 constexpr double kCertainDelay = 25.0;  // required gain of twice the log-likelihood beyond the number of lags
-constexpr std::size_t kPowers = 4;      // powers of the reference: constant to cubic
+constexpr Eigen::Index kPowers = 4;     // powers of the reference: constant to cubic
 constexpr double kAccuracy = 0.1;       // in steps; sufficient accuracy of the delay
 // The fourth difference of a jump is six times the jump; that of white noise has 8.4 standard deviations.
 constexpr double kJumpOfFourth = 50.0;  // standard deviations of the noise, i.e. a jump of eight
@@ -41,42 +41,44 @@ constexpr std::size_t kRings = 12;      // samples on either side: half the widt
 constexpr double kMostOfJumps = 0.25;
 // Limit of the ratio of fourth to second difference: small for smooth motion, two to six at a jump or kink.
 constexpr double kRoughness = 1.0;
-using Series = std::vector<double>;
 
 struct Pair {
-  Series rate, reference;
-  Series without_jumps;        // the reference; empty: has no jumps
-  std::vector<Series> others;  // references of the other axes, with the same delay
+  Eigen::VectorXd rate, reference;      // NaN: missing
+  Eigen::VectorXd without_jumps;        // the reference; empty: has no jumps
+  std::vector<Eigen::VectorXd> others;  // references of the other axes, with the same delay
   double step_s = 0.0;
 };
 
-Series differences(const Series& series) {
-  Series out(series.size(), std::nan(""));
-  for (std::size_t i = 1; i < series.size(); ++i) out[i] = series[i] - series[i - 1];
-  return out;
+Eigen::VectorXd vector_of(std::span<const double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-Series means(std::span<const double> series, std::size_t count) {
-  const Samples found = means_over(series, count);
-  return {found.begin(), found.end()};
+std::span<const double> values_of(const Eigen::VectorXd& series) {
+  return {series.data(), static_cast<std::size_t>(series.size())};
+}
+
+Eigen::VectorXd differences(const Eigen::VectorXd& series) {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(series.size(), std::nan(""));
+  out.tail(series.size() - 1) = series.tail(series.size() - 1) - series.head(series.size() - 1);
+  return out;
 }
 
 std::optional<Pair> pair_of(const Record& record) {
   if (record.reference_radps.empty() || record.time_s.size() < kLeast) return std::nullopt;
-  double period_s = 0.0;
   Pair pair;
   try {
-    period_s = sample_clock(record.time_s).period_s;
+    const double period_s = sample_clock(record.time_s).period_s;
     if (period_s > kSlowest_s) return std::nullopt;
     const Samples rate = on_even_grid(record, period_s, record.rate_radps);
     const std::size_t count = (rate.size() + kMostDelaySteps - 1) / kMostDelaySteps;
-    pair.rate = means(rate, count);
+    const auto means = [&](std::span<const double> series) { return vector_of(means_over(series, count)); };
+    pair.rate = means(rate);
     Samples reference = on_even_grid(record, period_s, record.reference_radps);
-    pair.reference = means(reference, count);
-    if (leave_out_jumps(reference, rate) > 0) pair.without_jumps = means(reference, count);
+    pair.reference = means(reference);
+    if (leave_out_jumps(reference, rate) > 0) pair.without_jumps = means(reference);
     for (const std::span<const double> other : record.other_references)
       if (!other.empty() && variance_of(other) > 0.0)
-        pair.others.push_back(means(on_even_grid(record, period_s, other), count));
+        pair.others.push_back(means(on_even_grid(record, period_s, other)));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // no even clock, or too few samples
@@ -85,13 +87,14 @@ std::optional<Pair> pair_of(const Record& record) {
 }
 
 std::size_t longest_lag(const Pair& pair) {
-  return std::min(static_cast<std::size_t>(kMostEarly_s / pair.step_s), pair.rate.size() / 4);
+  return std::min(static_cast<std::size_t>(kMostEarly_s / pair.step_s),
+                  static_cast<std::size_t>(pair.rate.size()) / 4);
 }
 
-std::vector<std::complex<double>> transform(const Series& series, std::size_t size) {
-  Series padded(size, 0.0);
-  for (std::size_t i = 0; i < series.size(); ++i)
-    if (std::isfinite(series[i])) padded[i] = series[i];
+std::vector<std::complex<double>> transform(const Eigen::VectorXd& series, std::size_t size) {
+  std::vector<double> padded(size, 0.0);
+  for (Eigen::Index i = 0; i < series.size(); ++i)
+    if (std::isfinite(series[i])) padded[static_cast<std::size_t>(i)] = series[i];
   std::vector<std::complex<double>> spectrum;
   Fourier().forward(spectrum, padded);
   return spectrum;
@@ -101,16 +104,16 @@ std::vector<std::complex<double>> transform(const Series& series, std::size_t si
 // the greatest size, from the nearest to no delay to the greatest. By the rate's spectrum alone, the noise of a reference
 // differentiated from angles would hide the motion.
 std::vector<std::ptrdiff_t> coarse_delays(const Pair& pair) {
-  const Series rate = differences(pair.rate), reference = differences(pair.reference);
-  Series both = rate;
-  both.insert(both.end(), reference.begin(), reference.end());
+  const Eigen::VectorXd rate = differences(pair.rate), reference = differences(pair.reference);
+  Eigen::VectorXd both(rate.size() + reference.size());
+  both << rate, reference;
   const Autoregression noise(both);
   const auto most = static_cast<std::ptrdiff_t>(longest_lag(pair));
-  const std::size_t size = std::bit_ceil(rate.size() + static_cast<std::size_t>(most) + 1);
+  const std::size_t size = std::bit_ceil(static_cast<std::size_t>(rate.size() + most + 1));
   std::vector<std::complex<double>> product = transform(noise.whitened(rate), size);
   const std::vector<std::complex<double>> other = transform(noise.whitened(reference), size);
   for (std::size_t i = 0; i < product.size(); ++i) product[i] = std::conj(product[i]) * other[i];
-  Series likeness;
+  std::vector<double> likeness;
   Fourier().inverse(likeness, product);
   const auto at = [&](std::ptrdiff_t lag) {
     return std::abs(
@@ -129,51 +132,37 @@ std::vector<std::ptrdiff_t> coarse_delays(const Pair& pair) {
 
 // Columns: rate, powers of the shifted reference, the other axes' references (misalignment, which in coning
 // resembles the slope), and last the slope over a step.
-std::vector<Series> columns_of(const Pair& pair, double scale, double steps, bool with_slope) {
-  std::vector<Series> columns{pair.rate};
-  const Samples moved = shifted(pair.reference, steps);
-  for (std::size_t p = 0; p < kPowers; ++p)
-    for (double& each : columns.emplace_back(moved.begin(), moved.end()))
-      if (std::isfinite(each)) each = std::pow(each / scale, static_cast<double>(p));
-  for (const Series& other : pair.others) {
-    const Samples its = shifted(other, steps);
-    columns.emplace_back(its.begin(), its.end());
-  }
-  if (!with_slope) return columns;
+Columns columns_of(const Pair& pair, double scale, double steps) {
   constexpr double kAside = 0.25;
-  const Samples behind = shifted(pair.reference, steps + kAside);
-  const Samples before = shifted(pair.reference, steps - kAside);
-  Series& slope = columns.emplace_back(behind.begin(), behind.end());
-  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - before[i]) / (2.0 * kAside);
+  const auto at = [&](const Eigen::VectorXd& series, double to) {
+    return vector_of(shifted(values_of(series), to));
+  };
+  Columns columns(pair.rate.size(), 2 + kPowers + static_cast<Eigen::Index>(pair.others.size()));
+  const Eigen::ArrayXd moved = at(pair.reference, steps).array() / scale;
+  columns.col(0) = pair.rate;
+  columns.col(1) = moved.isFinite().select(Eigen::ArrayXd::Ones(moved.size()), moved);
+  Eigen::Index last = 1;
+  for (; last < kPowers; ++last) columns.col(last + 1) = columns.col(last).array() * moved;
+  for (const Eigen::VectorXd& other : pair.others) columns.col(++last) = at(other, steps);
+  columns.col(++last) =
+      (at(pair.reference, steps + kAside) - at(pair.reference, steps - kAside)) / (2.0 * kAside);
   return columns;
 }
 
-std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregression& noise) {
-  std::vector<Series> white;
-  white.reserve(columns.size());
-  for (const Series& column : columns) white.push_back(noise.whitened(column));
-  return white;
-}
-
-// Autoregression of the noise that remains with the reference in `columns`, whose last is the slope.
-Autoregression noise_about(const std::vector<Series>& columns) {
-  const std::vector<Series> without(columns.begin(), columns.end() - 1);
-  const SeriesFit plain = least_squares(without, complete_rows(without));
-  Series left = columns.front();
-  for (std::size_t p = 1; p < without.size(); ++p)
-    for (std::size_t i = 0; i < left.size(); ++i)
-      left[i] -= plain.coefficients[static_cast<Eigen::Index>(p - 1)] * without[p][i];
-  return Autoregression(left);
+// Autoregression of the noise next to the reference in `columns`, whose last is the slope.
+Autoregression noise_about(const Columns& columns) {
+  const Columns without = columns.leftCols(columns.cols() - 1);
+  const SeriesFit fit = least_squares(without, complete_rows(without));
+  return Autoregression(without.col(0) - without.rightCols(without.cols() - 1) * fit.coefficients);
 }
 
 // Harmonics of the turned angle, which over an arc resemble the slope.
-std::vector<Series> once_a_turn(const Pair& pair) {
-  std::vector<Series> columns(2, Series(pair.reference.size()));
+Columns once_a_turn(const Pair& pair) {
+  Columns columns(pair.reference.size(), 2);
   double angle = 0.0;
-  for (std::size_t i = 0; i < pair.reference.size(); ++i) {
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     if (std::isfinite(pair.reference[i])) angle += pair.reference[i] * pair.step_s;
-    columns[0][i] = std::cos(angle);
-    columns[1][i] = std::sin(angle);
+    columns.row(i) << std::cos(angle), std::sin(angle);
   }
   return columns;
 }
@@ -184,40 +173,45 @@ struct Delay {
   double left = 0.0;  // mean square of the whitened residual
 };
 
+// Compares the delay with none and with the harmonics of the turned angle; nullopt if these explain more.
+std::optional<Delay> weighed(const Pair& pair, double scale, const Autoregression& noise, Delay delay) {
+  const auto at = [&](double steps) {
+    const Columns columns = columns_of(pair, scale, steps);
+    return noise.whitened(columns.leftCols(columns.cols() - 1));
+  };
+  // Interpolation attenuates noise near half the sample rate, and the mirrored shift does so alike.
+  const Columns late = at(delay.steps), logged = at(0.0), mirrored = at(-delay.steps);
+  Columns turned(logged.rows(), logged.cols() + 2);
+  turned << logged, noise.whitened(once_a_turn(pair));
+  Columns all(logged.rows(), 3 * logged.cols());
+  all << late, logged, mirrored;
+  const std::vector<Eigen::Index> rows = complete_rows(all);
+  const double square = least_squares(late, rows).square;
+  if (least_squares(turned, rows).square < square) return std::nullopt;
+  const double without = std::min(least_squares(logged, rows).square, least_squares(mirrored, rows).square);
+  delay.gain = static_cast<double>(rows.size()) * std::log(without / square);
+  delay.left = square / static_cast<double>(rows.size());
+  return delay;
+}
+
 std::optional<Delay> refined(const Pair& pair, double steps) {
-  const double scale = std::sqrt(variance_of(pair.reference));
+  const double scale = std::sqrt(variance_of(values_of(pair.reference)));
   if (!(scale > 0.0)) return std::nullopt;
   Delay delay;
   delay.steps = steps;
   double low = -HUGE_VAL, high = HUGE_VAL, reach = 0.5, last = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Series> columns = columns_of(pair, scale, delay.steps, true);
-    if (columns.front().size() < kLeast) return std::nullopt;
+    const Columns columns = columns_of(pair, scale, delay.steps);
     const Autoregression noise = noise_about(columns);
-    const std::vector<Series> white = whitened(columns, noise);
-    std::vector<std::uint8_t> rows = complete_rows(white);
+    const Columns white = noise.whitened(columns);
+    const std::vector<Eigen::Index> rows = complete_rows(white);
+    if (rows.size() < kLeast) return std::nullopt;
     const SeriesFit fit = least_squares(white, rows);
     const double of_reference = fit.coefficients[1] / scale;
     const double step = fit.coefficients[fit.coefficients.size() - 1] / of_reference;
-    if (fit.rows < kLeast || !std::isfinite(step)) return std::nullopt;
+    if (!std::isfinite(step)) return std::nullopt;
     delay.error = std::sqrt(fit.last_variance) / std::abs(of_reference);
-    if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
-      std::vector<Series> as_logged = whitened(columns_of(pair, scale, 0.0, false), noise);
-      // Interpolation attenuates noise near half the sample rate, and the mirrored shift does so alike.
-      const std::vector<Series> mirrored = whitened(columns_of(pair, scale, -delay.steps, false), noise);
-      const std::vector<std::uint8_t> known = complete_rows(as_logged), too = complete_rows(mirrored);
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        if (!known[i] || !too[i]) rows[i] = 0;
-      const SeriesFit with = least_squares(white, rows);
-      const double without =
-          std::min(least_squares(as_logged, rows).square, least_squares(mirrored, rows).square);
-      for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
-      if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
-      delay.gain = static_cast<double>(with.rows) * std::log(without / with.square);
-      delay.left = with.square / static_cast<double>(with.rows);
-      delay.steps += step;  // accurate enough
-      return delay;
-    }
+    if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) return weighed(pair, scale, noise, delay);
     // The reference's noise makes the steps too short: they grow while their sign stays, between known bounds.
     (step > 0.0 ? low : high) = delay.steps;
     reach = std::max(1.0, std::exchange(last, step) * step < 0.0 ? 0.5 * reach : 2.0 * reach);
@@ -248,7 +242,7 @@ double price_of(const Pair& pair) {
 // Jumps give the delay only in whole samples but dominate the likelihood. If the samples without jumps
 // determine it to a fraction, their result is used.
 void settle_without_jumps(Pair& pair, Delay& delay) {
-  if (pair.without_jumps.empty()) return;
+  if (pair.without_jumps.size() == 0) return;
   Pair smooth = pair;
   smooth.reference = pair.without_jumps;
   const std::optional<Delay> between = refined(smooth, delay.steps);
@@ -283,7 +277,7 @@ std::string in_words(const ReferenceDelay& delay, const std::string& name) {
 OwnedRecords align_references(OwnedRecords given) {
   for (Record& record : given.records) {
     std::optional<Pair> pair = pair_of(record);
-    if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
+    if (!pair || !(variance_of(values_of(pair->reference)) > 0.0)) continue;
     std::optional<Delay> delay = likeliest_delay(*pair);
     if (!delay || delay->gain < price_of(*pair)) continue;
     settle_without_jumps(*pair, *delay);

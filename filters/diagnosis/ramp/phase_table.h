@@ -65,8 +65,7 @@ void each_phase_step(const PhasedRecord& of, Use&& use) {
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
     const double cycles = of.cycles(i);
     const double now = cycles - std::floor(cycles);
-    double error = record.rate_radps[i];
-    if (!record.reference_radps.empty()) error -= record.reference_radps[i];
+    const double error = record.error(i);
     const double earlier = std::exchange(before, now);
     if (!std::isfinite(error)) continue;
     if (weight > 0.0 && std::isfinite(earlier) && std::isfinite(now))

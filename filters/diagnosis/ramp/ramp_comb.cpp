@@ -37,8 +37,7 @@ Stretch longest_without_hole(const Record& record, double step_s) {
   Stretch longest{0, 0};
   std::size_t begin = 0;
   for (std::size_t i = 0; i <= record.time_s.size(); ++i) {
-    const bool missing = i == record.time_s.size() || !std::isfinite(record.rate_radps[i]) ||
-                         (!record.reference_radps.empty() && !std::isfinite(record.reference_radps[i]));
+    const bool missing = i == record.time_s.size() || !std::isfinite(record.error(i));
     const bool hole = i > begin && !missing && record.time_s[i] - record.time_s[i - 1] > 1.5 * step_s;
     if (!missing && !hole) continue;
     if (i - begin > longest.end - longest.begin) longest = {begin, i};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
@@ -20,6 +19,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   WithoutRamps parts;
   parts.records = records;
   if (records.empty()) return parts;
+  std::vector<RampFit> fits;
   for (const RecordChannel& channel : records.front().channels) {
     const auto wraps = [&](const Record& record) {
       return wrap_period(values_of(record, channel.name)) > 0.0;
@@ -28,18 +28,26 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
     for (Record& record : parts.records) {
       std::erase_if(record.channels, [&](const RecordChannel& other) { return other.name == channel.name; });
     }
-    if (auto ramp = fit_ramp(records, channel.name, significance)) parts.ramps.push_back(std::move(*ramp));
+    if (auto ramp = fit_ramp(records, channel.name, significance)) fits.push_back(std::move(*ramp));
   }
-  if (parts.ramps.empty()) {
+  if (fits.empty()) {
     RebuiltRamp rebuilt = rebuild_ramp(parts.records, significance);
-    if (rebuilt.fit) parts.ramps.push_back(std::move(*rebuilt.fit));
+    if (rebuilt.fit) fits.push_back(std::move(*rebuilt.fit));
     parts.remark = std::move(rebuilt.remark);
   }
-  if (parts.ramps.empty()) return parts;
+  if (fits.empty()) return parts;
+  double total = 0.0;
+  for (const Record& record : records) total += variance_of(error_of(record));
+  for (RampFit& fit : fits) {
+    double explained = 0.0;
+    for (const Samples& each : fit.correction) explained += variance_of(each);
+    fit.found.variance_explained = std::min(1.0, explained / total);
+    parts.ramps.push_back(std::move(fit.found));
+  }
   for (std::size_t r = 0; r < records.size(); ++r) {
     Samples rate(records[r].rate_radps);
-    for (const RampFit& ramp : parts.ramps)
-      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
+    for (const RampFit& fit : fits)
+      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= fit.correction[r][i];
     parts.rates.push_back(std::move(rate));
   }
   for (std::size_t r = 0; r < records.size(); ++r) parts.records[r].rate_radps = parts.rates[r];
@@ -53,9 +61,6 @@ constexpr double kOverOthers = 30.0;
 // A ramp is not detectable in slower sensors.
 constexpr double kQuickSensor_hz = 20.0;
 constexpr double kCertainTable = 3.0;  // standard errors of the table
-// The ramp's phase follows the angle. The largest walk allowed is 0.1 cycle in 40 min, above the one
-// measured. Lines of a structure or machine walk more.
-constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 
 // Remark about the lines of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
@@ -68,51 +73,28 @@ std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
          "corrected. A capture at another rate would tell, and so would the feedback ramp, logged";
 }
 
-// Phase relative to k times the angle, piece by piece, to first order: its random walk, and the resulting
-// uncertainty of k.
-struct Phase {
-  double walk = 0.0, walk_error = 0.0;  // cycles/sqrt(s)
-  double cycles_error = 0.0;            // of k
-};
-
-Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
-  constexpr std::size_t kPieces = 32;
+// Standard error of k: from the shift of the table's phase over the angle, to first order.
+double cycles_error_of(const UnbrokenPart& part, const RampComb& comb) {
   const Eigen::VectorXd& angle = comb.table.angle_rad;
-  const double variance = comb.table.left() / comb.table.samples;
   const double middle = 0.5 * (part.angle_rad.back() + part.angle_rad.front());
   const double aside = 0.25 / static_cast<double>(angle.size());  // cycles
   const auto moved = [](double cycles) { return cycles - std::floor(cycles); };
-  std::array<double, kPieces> along{}, square{};
   double information = 0.0;
   each_phase_step(part.with_phase(comb.cycles_per_rad), [&](std::size_t i, const PhaseStep& step) {
     const auto shifted = [&](double off) {
       return ramp_rate(angle, {moved(step.before + off), moved(step.now + off), step.dt_s, 0.0});
     };
     const double slope = (shifted(aside) - shifted(-aside)) / (2.0 * aside);
-    const std::size_t piece = i * kPieces / part.size();
-    along[piece] += slope * (step.error_radps - ramp_rate(angle, step));
-    square[piece] += slope * slope;
     information += std::pow(slope * (part.angle_rad[i] - middle), 2);
   });
+  return std::sqrt(comb.table.left() / comb.table.samples / std::max(information, 1e-300));
+}
+
+// Random walk of the phase, cycles/sqrt(s), that the table does not show: over the record it spreads the phase as
+// much as one step of the table does.
+double unseen_walk(const UnbrokenPart& part, const RampComb& comb) {
   const double span_s = static_cast<double>(part.size()) * part.sample_s();
-  // The difference of two neighbouring means has 2/3 of the walk's variance in one piece.
-  double walk = 0.0;
-  for (std::size_t p = 1; p < kPieces; ++p) {
-    if (!(square[p] > 0.0) || !(square[p - 1] > 0.0)) continue;
-    const double apart = along[p] / square[p] - along[p - 1] / square[p - 1];
-    walk += apart * apart - variance / square[p] - variance / square[p - 1];
-  }
-  walk /= 2.0 / 3.0 * span_s * static_cast<double>(kPieces - 1) / static_cast<double>(kPieces);
-  // Share of the blur of the phase; a smaller walk cannot be detected.
-  constexpr double kWalkSeen = 0.1;
-  const double least = kWalkSeen / (std::numbers::pi * static_cast<double>(angle.size()));
-  Phase phase;
-  phase.walk = std::sqrt(std::max(walk, least * least / span_s));
-  phase.walk_error = phase.walk / std::sqrt(2.0 * static_cast<double>(kPieces - 1));
-  const double turned = std::abs(part.angle_rad.back() - part.angle_rad.front());
-  const double by_walk = 1.2 * phase.walk * phase.walk * span_s / (turned * turned);
-  phase.cycles_error = std::sqrt(variance / std::max(information, 1e-300) + by_walk);
-  return phase;
+  return 1.0 / (static_cast<double>(comb.table.angle_rad.size()) * std::sqrt(12.0 * span_s));
 }
 
 // One cycle minus its mean, at twice the table's resolution and halfway between its steps, where linear
@@ -139,17 +121,15 @@ Samples tracked(const Record& record, const RampSettings& settings) {
   Samples correction(record.time_s.size());
   for (std::size_t i = 0; i < correction.size(); ++i) {
     const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
-    double error = record.rate_radps[i];
-    if (!record.reference_radps.empty()) error -= record.reference_radps[i];
     correction[i] = tracker.step({.measured_radps = record.rate_radps[i],
-                                  .rest_radps = error,
+                                  .rest_radps = record.error(i),
                                   .dt_s = dt,
                                   .missed_s = dt > 1.5 * usual_s ? dt - usual_s : 0.0});
   }
   return correction;
 }
 
-Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase& phase) {
+Effect effect_of(const UnbrokenPart& part, const RampComb& comb, const RampSettings& settings) {
   Effect effect;
   effect.form = "rebuilt_ramp";
   effect.period = 1.0;
@@ -161,9 +141,9 @@ Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase
   }
   const double density_error = settings.noise_density / std::sqrt(2.0 * comb.table.samples);
   effect.parameters = {{"angle_rms", rms(angle), comb.table.angle_error, "rad"},
-                       {"cycles_per_rad", settings.cycles_per_rad, phase.cycles_error, "1/rad"},
+                       {"cycles_per_rad", settings.cycles_per_rad, cycles_error_of(part, comb), "1/rad"},
                        {"noise_density", settings.noise_density, density_error, "rad/s/sqrt(Hz)"},
-                       {"phase_walk", settings.phase_walk, phase.walk_error, "cycles/sqrt(s)"}};
+                       {"phase_walk", settings.phase_walk, 0.0, "cycles/sqrt(s)"}};
   effect.meaning = meaning_of(effect);
   return effect;
 }
@@ -191,13 +171,12 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, const Unbroken
                               const RampComb& comb) {
   const PhaseTable& table = comb.table;
   if (comb.over_fixed < kOverOthers || comb.over_line < kOverOthers) return std::nullopt;
-  const Phase phase = phase_of(part, comb);
   const RampSettings settings{comb.cycles_per_rad, cycle_of(table.angle_rad),
-                              std::sqrt(table.left() / table.samples * part.sample_s()), phase.walk};
-  if (rms(settings.angle_rad) < kCertainTable * table.angle_error || phase.walk > kMostWalk)
-    return std::nullopt;
+                              std::sqrt(table.left() / table.samples * part.sample_s()),
+                              unseen_walk(part, comb)};
+  if (rms(settings.angle_rad) < kCertainTable * table.angle_error) return std::nullopt;
   RampFit fit;
-  fit.found = {effect_of(comb, settings, phase), chance_of(comb), 0.0, table.ratio()};
+  fit.found = {effect_of(part, comb, settings), chance_of(comb), 0.0, table.ratio()};
   for (const Record& record : records) fit.correction.push_back(tracked(record, settings));
   return helps(records, fit) ? std::optional(std::move(fit)) : std::nullopt;
 }

@@ -11,7 +11,7 @@
 namespace ifog {
 
 struct WithoutRamps {
-  std::vector<RampFit> ramps;
+  std::vector<FoundEffect> ramps;
   std::vector<Record> records;  // without wrapping channels and without what the ramps explain
   std::vector<Samples> rates;   // corrected rates, if a ramp was found
   std::string remark;           // about lines that may come from a ramp that was not logged, or empty

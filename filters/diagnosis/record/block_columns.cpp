@@ -27,8 +27,6 @@ Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std
   const bool add_power = !source.power.empty();
   return block_means(data.grid, [&](std::size_t k, bool starts) {
     if (starts) shape.restart();
-    if (settings.form == Form::kDeadZone && !source.power.empty())
-      return mean_in_dead_zone(source.values[k] - settings.reference, source.power[k], settings.half_width);
     return shape.step_over(source.values[k], add_power ? source.power[k] : 0.0, data.grid.fine_s);
   });
 }

@@ -29,9 +29,7 @@ std::string too_few(const std::vector<Record>& records, std::size_t blocks, doub
   std::size_t samples = 0;
   for (const Record& record : records)
     for (std::size_t i = 0; i < record.time_s.size(); ++i)
-      if (std::isfinite(record.rate_radps[i]) &&
-          (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
-        ++samples;
+      if (std::isfinite(record.error(i))) ++samples;
   return formatted(
       "%zu samples with a rate (and a reference, if there is one) in %zu blocks of %.3g s that are at least "
       "half full: expected at least %zu of each. A long hole: diagnose each side by itself (--from, --to, or "
@@ -92,8 +90,7 @@ double white_variance(const std::vector<Record>& records) {
     const std::size_t n = record.rate_radps.size();
     const std::size_t stride = std::max<std::size_t>(1, n / 50000);
     for (std::size_t i = 1; i < n; i += stride) {
-      double d = record.rate_radps[i] - record.rate_radps[i - 1];
-      if (!record.reference_radps.empty()) d -= record.reference_radps[i] - record.reference_radps[i - 1];
+      const double d = record.error(i) - record.error(i - 1);
       if (std::isfinite(d)) differences.push_back(std::abs(d));
     }
   }
@@ -103,14 +100,6 @@ double white_variance(const std::vector<Record>& records) {
 }
 
 namespace {
-
-void describe(FineChannel& channel) {
-  const auto [low, high] = std::minmax_element(channel.values.begin(), channel.values.end());
-  channel.low = *low;
-  channel.high = *high;
-  const double scale = std::max({std::abs(channel.low), std::abs(channel.high), 1e-300});
-  channel.varies = channel.high - channel.low > 1e-9 * scale;
-}
 
 // Slope of the error over the reference, from changes between neighbouring means of m samples.
 struct MeansSlope {
@@ -162,9 +151,7 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
   for (const Record& record : records) span += record.time_s.back() - record.time_s.front() + grid.sample_s;
   const double samples = span / grid.sample_s;
   auto a_block = static_cast<std::size_t>(std::ceil(samples / static_cast<double>(most_blocks)));
-  const bool all_referenced =
-      std::ranges::none_of(records, [](const Record& record) { return record.reference_radps.empty(); });
-  if (all_referenced && grid.sample_s <= kSlowest_s) {
+  if (!records.front().reference_radps.empty() && grid.sample_s <= kSlowest_s) {
     const std::size_t least = long_enough(records);
     grid.noisy_reference = least > 1;
     a_block = std::max(a_block, least);
@@ -187,11 +174,8 @@ StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<doub
   for (std::size_t b = 0; b < blocks; ++b) {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = first[b * grid.fine]; i < first[(b + 1) * grid.fine]; ++i) {
-      double value = record.rate_radps[i];
-      if (!record.reference_radps.empty()) value -= record.reference_radps[i];
-      if (!std::isfinite(value)) continue;
-      sum += value;
-      count += 1.0;
+      const double value = record.error(i);
+      if (std::isfinite(value)) sum += value, count += 1.0;
     }
     const bool enough = count >= std::max(1.0, kLeastShare * full);
     grid.valid.push_back(enough ? 1 : 0);
@@ -202,19 +186,21 @@ StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<doub
   return first;
 }
 
-template <class ValuesOf>
-FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid,
-                         const std::vector<StepStarts>& starts, const std::string& name,
-                         ValuesOf&& values_in) {
+// values: by record.
+FineChannel fine_channel(const BlockGrid& grid, const std::vector<StepStarts>& starts,
+                         const std::string& name, const std::vector<std::span<const double>>& values) {
   FineChannel channel;
   channel.name = name;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const bool several = grid.fine_s > grid.sample_s;  // samples per step > 1
-    const StepMeans steps = step_means(values_in(records[r]), starts[r], several);
+  const bool several = grid.fine_s > grid.sample_s;  // samples per step > 1
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    const StepMeans steps = step_means(values[r], starts[r], several);
     channel.values.insert(channel.values.end(), steps.means.begin(), steps.means.end());
     channel.power.insert(channel.power.end(), steps.power.begin(), steps.power.end());
   }
-  describe(channel);
+  const auto [low, high] = std::ranges::minmax(channel.values);
+  channel.low = low;
+  channel.high = high;
+  channel.varies = high - low > 1e-9 * std::max({std::abs(low), std::abs(high), 1e-300});
   return channel;
 }
 
@@ -243,6 +229,12 @@ std::size_t BlockGrid::longest() const {
   return most;
 }
 
+std::optional<std::size_t> BlockData::index_of(std::string_view name) const {
+  const auto found = std::ranges::find(channels, name, &FineChannel::name);
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
   check_columns(records);
   BlockData data;
@@ -253,19 +245,19 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   for (const RecordChannel& channel : records.front().channels) {
-    const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
-    if (!std::ranges::all_of(records, has_it)) continue;
-    data.channels.push_back(fine_channel(records, data.grid, starts, channel.name, [&](const Record& record) {
-      return values_of(record, channel.name);
-    }));
+    std::vector<std::span<const double>> values;
+    for (const Record& record : records) values.push_back(values_of(record, channel.name));
+    if (std::ranges::any_of(values, [](const auto& each) { return each.empty(); })) continue;
+    data.channels.push_back(fine_channel(data.grid, starts, channel.name, values));
     data.channels.back().two_valued = is_switch(records, channel.name);
     data.channels.back().of_axis = !axis_of_rate(channel.name).empty();
     data.channels.back().period = channel.period;
   }
-  if (std::ranges::all_of(records, [](const Record& r) { return !r.reference_radps.empty(); })) {
+  if (!records.front().reference_radps.empty()) {
+    std::vector<std::span<const double>> values;
+    for (const Record& record : records) values.push_back(record.reference_radps);
     data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
-    data.channels.push_back(fine_channel(records, data.grid, starts, records.front().reference_name,
-                                         [](const Record& record) { return record.reference_radps; }));
+    data.channels.push_back(fine_channel(data.grid, starts, records.front().reference_name, values));
     // Averages over seconds at set rates: drift between them is not sampled.
     data.grid.dwells = data.grid.sample_s > kSlowest_s && data.channels.back().varies;
   }

@@ -7,7 +7,9 @@
 #include <Eigen/Dense>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "filters/diagnosis/record.h"
@@ -91,6 +93,9 @@ struct BlockData {
   BlockGrid grid;
   std::vector<FineChannel> channels;  // in the order of the first record; the reference, if any, last
   std::ptrdiff_t reference = -1;      // index of the reference
+
+  // Of a channel by name; nullopt if there is none.
+  [[nodiscard]] std::optional<std::size_t> index_of(std::string_view name) const;
 };
 
 // Largest sample time of a time series, s. Slower rows are points of a table, averages by themselves.

@@ -27,9 +27,8 @@ Samples on_even_grid(const Record& record, double sample_s, std::span<const doub
 }
 
 Samples error_of(const Record& record) {
-  Samples error(record.rate_radps);
-  if (record.reference_radps.empty()) return error;
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] -= record.reference_radps[i];
+  Samples error(record.rate_radps.size());
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = record.error(i);
   return error;
 }
 

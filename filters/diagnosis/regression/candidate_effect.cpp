@@ -151,19 +151,13 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
     return std::nullopt;
   Candidate candidate;
   candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
-  const auto index = [&](const std::string& name) {
-    for (std::size_t i = 0; i < data.channels.size(); ++i) {
-      if (data.channels[i].name == name) return i;
-    }
-    return Candidate::kNone;
-  };
   if (has_channel(*form)) {
-    candidate.channel = index(effect.channel);
+    candidate.channel = data.index_of(effect.channel).value_or(Candidate::kNone);
     if (candidate.channel == Candidate::kNone) return std::nullopt;
   }
   if (*form == Form::kProduct) {
     candidate.with_form = form_named(effect.with_form).value_or(Form::kLinear);
-    candidate.with_channel = index(effect.with_channel);
+    candidate.with_channel = data.index_of(effect.with_channel).value_or(Candidate::kNone);
     if (candidate.with_channel == Candidate::kNone) return std::nullopt;
   }
   candidate.time_constant_s = parameter(effect, time_constant_name(effect));

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "filters/linear/normal_equations.h"
-
 namespace ifog {
 
 Columns constants(const BlockGrid& grid) {
@@ -29,14 +27,18 @@ Eigen::Index column_of(const BlockGrid& grid, std::size_t effect) {
   return 1 + grid.constants() + static_cast<Eigen::Index>(effect);
 }
 
-Eigen::RowVectorXd means_of(const BlockData& data, const std::vector<Candidate>& effects) {
-  const BlockGrid& grid = data.grid;
-  const Columns columns = design(data, effects);
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(columns.cols());
-  for (std::size_t b = 0; b < grid.size(); ++b)
-    if (grid.valid[b]) sum += columns.row(static_cast<Eigen::Index>(b));
-  sum.segment(1, grid.constants()).setZero();
-  return sum / std::max(1.0, static_cast<double>(grid.used()));
+Eigen::VectorXd means_of(const BlockData& data, const std::vector<Candidate>& effects) {
+  const auto mean = [&](const Eigen::VectorXd& column) {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < data.grid.size(); ++b)
+      if (data.grid.valid[b]) sum += column[static_cast<Eigen::Index>(b)];
+    return sum / std::max(1.0, static_cast<double>(data.grid.used()));
+  };
+  Eigen::VectorXd means(static_cast<Eigen::Index>(effects.size()) + 1);
+  means[0] = mean(data.grid.error);
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    means[static_cast<Eigen::Index>(i) + 1] = mean(regressor(data, effects[i]));
+  return means;
 }
 
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
@@ -49,22 +51,6 @@ std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
     }
   }
   return fold;
-}
-
-Eigen::VectorXd solve(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
-                      Eigen::MatrixXd* covariance) {
-  Columns white = columns;
-  const Whitening filter(grid, shape);
-  filter.apply(white);
-  const Eigen::Index p = columns.cols() - 1;
-  const Eigen::MatrixXd gram = white.transpose() * white;
-  const NormalEquations fit = NormalEquations::of_measured_first(gram);
-  if (covariance) {
-    const double left = std::max(gram(0, 0) - fit.explained(), 0.0);
-    const double variance = left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p));
-    *covariance = variance * fit.inverse();
-  }
-  return fit.coefficients();
 }
 
 }  // namespace ifog

@@ -21,7 +21,6 @@ constexpr double kLeastDecay = 1.0;
 constexpr double kMostDecays = 16.0;  // fewest decay times in a record
 constexpr std::size_t kFewestBlocks = 512;
 constexpr std::size_t kMostOrders = 6;
-constexpr double kOfHarmonic = 3.0;  // number of parameters
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
 constexpr double kRoughStep = 1.4;
 constexpr double kFine = 1.05;
@@ -126,7 +125,7 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
         NoiseShape start = with_hump(grid, fit.shape, hump, white, of);
         DampedHarmonic& mine = start.harmonics.back();
         mine.decay = std::max(mine.decay / wider, kLeastDecay);
-        const double value = fit_whitened(grid, start, columns).log_likelihood;
+        const double value = fit_whitened(grid, start, columns).log_likelihood();
         if (value > best.log_likelihood) best = {start, value, 0.0};
       }
     }
@@ -136,20 +135,10 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
   return likelier;
 }
 
-bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than) {
-  return information_criterion(grid, one) < information_criterion(grid, than);
-}
-
-// Fit without one harmonic, if the criterion is smaller.
-NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
-  NoiseShape shape = fit.shape;
-  shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
-  const NoiseFit without = climb(grid, columns, shape, kRoughStep, true);
-  return is_better(grid, without, fit) ? without : fit;
-}
-
-double cost(const BlockGrid& grid, double parameters) {
-  return parameters * std::log(static_cast<double>(grid.used()));
+// Bayesian information criterion: twice the log-likelihood that a harmonic has to gain.
+double cost_of_one(const BlockGrid& grid) {
+  constexpr double kParameters = 3.0;
+  return kParameters * std::log(static_cast<double>(grid.used()));
 }
 
 }  // namespace
@@ -159,30 +148,18 @@ HarmonicLimits harmonic_limits(const BlockGrid& grid) {
   return {kLeastPeriods / longest, kLeastDecay, longest / kMostDecays};
 }
 
-double information_criterion(const BlockGrid& grid, const NoiseFit& fit) {
-  return cost(grid, kOfHarmonic * static_cast<double>(fit.shape.harmonics.size())) - 2.0 * fit.log_likelihood;
-}
-
 NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit) {
   if (grid.dwells || grid.longest() < kFewestBlocks) return fit;
   const HarmonicLimits limits = harmonic_limits(grid);
   NoiseFit best = fit;
-  if (!fit.shape.harmonics.empty()) best = climb(grid, columns, fit.shape, kRoughStep, true);
   while (best.shape.harmonics.size() < kMostOrders) {
     const std::optional<Hump> hump = highest_hump(of_innovations(grid, columns, best.shape), limits);
-    if (!hump || hump->gain < cost(grid, kOfHarmonic)) break;
+    if (!hump || hump->gain < cost_of_one(grid)) break;
     const NoiseFit more = add_one(grid, columns, best, *hump);
-    if (!is_better(grid, more, best)) break;
+    if (2.0 * (more.log_likelihood - best.log_likelihood) < cost_of_one(grid)) break;
     best = more;
   }
-  if (best.shape.harmonics.empty()) return fit;
-  for (std::size_t i = 0; i < best.shape.harmonics.size();) {
-    const std::size_t before = best.shape.harmonics.size();
-    best = with_less(grid, columns, best, i);
-    if (best.shape.harmonics.size() == before) ++i;
-  }
-  best = climb(grid, columns, best.shape, kFine, true);
-  return best.shape.harmonics.empty() && !is_better(grid, best, fit) ? fit : best;
+  return best.shape.harmonics.empty() ? fit : climb(grid, columns, best.shape, kFine, true);
 }
 
 }  // namespace ifog

@@ -15,11 +15,7 @@ struct HarmonicLimits {
 };
 HarmonicLimits harmonic_limits(const BlockGrid& grid);
 
-// Smaller is better. Counts the noise parameters except white noise, flicker and walk, without constants.
-double information_criterion(const BlockGrid& grid, const NoiseFit& fit);
-
-// `fit` with further harmonics, all refitted; existing ones are removed if not worth their parameters.
-// Returns `fit` if there are none. columns: measurement, then regressors, not whitened.
+// `fit`, which has none, with harmonics, all refitted. columns: measurement, then regressors, not whitened.
 NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit);
 
 }  // namespace ifog

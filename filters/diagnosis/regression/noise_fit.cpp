@@ -9,32 +9,34 @@
 #include <vector>
 
 #include "filters/diagnosis/regression/harmonics.h"
-#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 
-WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns) {
+WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                         const Prior& prior) {
   Columns white = columns;
   const Whitening filter(grid, shape);
   filter.apply(white);
-  const Eigen::Index p = columns.cols() - 1;
-  const Eigen::MatrixXd gram = white.transpose() * white;
-  double square = gram(0, 0);
-  if (p > 0) square -= NormalEquations::of_measured_first(gram).explained();
+  Eigen::MatrixXd gram = white.transpose() * white;
+  gram.diagonal().tail(prior.coefficients).array() += prior.weight * filter.innovation_variance();
+  const NormalEquations equations = NormalEquations::of_measured_first(gram);
+  const double square = std::max(gram(0, 0) - equations.explained(), 1e-12 * gram(0, 0) + 1e-300);
   const auto n = static_cast<double>(grid.used());
-  square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
-  WhitenedFit fit;
-  fit.white_variance = square / std::max(1.0, n - static_cast<double>(p)) / filter.innovation_variance();
-  // With concentrated white variance the determinant of a steady filter cancels the innovations' scale.
-  fit.log_likelihood = -0.5 * n * std::log(square / n);
-  return fit;
+  return {equations, square, n, std::max(1.0, n - static_cast<double>(columns.cols() - 1)),
+          filter.innovation_variance()};
 }
 
+namespace {
+
+NoiseFit noise_fit_at(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns) {
+  const WhitenedFit fit = fit_whitened(grid, shape, columns);
+  return {shape, fit.log_likelihood(), fit.white_variance()};
+}
+
+}  // namespace
+
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start, double precision) {
-  if (grid.dwells) {
-    const WhitenedFit fit = fit_whitened(grid, {}, columns);
-    return {{}, fit.log_likelihood, fit.white_variance};
-  }
+  if (grid.dwells) return noise_fit_at(grid, {}, columns);
   NoiseShape shape = start;
   if (shape.walk == 0.0) shape.walk = 1e-5;
   if (shape.flicker == 0.0) shape.flicker = 1e-3;
@@ -54,7 +56,7 @@ NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   for (const double walk : {0.0, 1e-6, 1e-4, 1e-2, 1.0}) {
     for (const double flicker : {0.0, 1e-3, 1e-1, 1e1}) {
       const NoiseShape shape{walk, flicker};
-      const double value = fit_whitened(grid, shape, columns).log_likelihood;
+      const double value = fit_whitened(grid, shape, columns).log_likelihood();
       Start& start = starts[flicker == 0.0 ? 0 : walk == 0.0 ? 1 : 2];
       if (value > start.value) start = {shape, value};
     }
@@ -140,7 +142,9 @@ std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool wi
 // in the logarithms; zero is tried separately.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,
                bool with_harmonics) {
-  const auto evaluate = [&](const NoiseShape& at) { return fit_whitened(grid, at, columns).log_likelihood; };
+  const auto evaluate = [&](const NoiseShape& at) {
+    return fit_whitened(grid, at, columns).log_likelihood();
+  };
   double best = evaluate(shape);
   const std::vector<Way> ways = ways_of(grid, shape, with_harmonics);
   double factor = 4.0;
@@ -169,8 +173,7 @@ NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, 
       shape = trial;
     }
   }
-  const WhitenedFit fit = fit_whitened(grid, shape, columns);
-  return {shape, fit.log_likelihood, fit.white_variance};
+  return noise_fit_at(grid, shape, columns);
 }
 
 }  // namespace ifog

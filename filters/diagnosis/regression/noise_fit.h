@@ -1,20 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maximum likelihood of the noise model, given regressors. The white variance and the regressors'
-// coefficients are concentrated out of the innovations' likelihood.
+// Generalised least squares under known noise, and the maximum likelihood of the noise given regressors. The
+// white variance and the regressors' coefficients are concentrated out of the innovations' likelihood.
 #pragma once
 
 #include "filters/diagnosis/regression/whitening.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 
-// Residual of the first whitened column after least squares on the others.
+// Least squares of the first whitened column on the others.
 struct WhitenedFit {
-  double log_likelihood = 0.0;  // except for a constant that depends only on the number of blocks
-  double white_variance = 0.0;  // of a block mean, in the first column's unit squared
+  NormalEquations equations;
+  double square;               // of the residual
+  double blocks, freedom;      // number of valid blocks; minus that of the coefficients
+  double innovation_variance;  // / white variance
+
+  [[nodiscard]] Eigen::VectorXd coefficients() const { return equations.coefficients(); }
+  [[nodiscard]] Eigen::MatrixXd covariance() const { return square / freedom * equations.inverse(); }
+  // Of a block mean, in the first column's unit squared.
+  [[nodiscard]] double white_variance() const { return square / freedom / innovation_variance; }
+  // Except for a constant that depends only on the number of blocks, or of blocks and coefficients. The
+  // determinant of a steady filter cancels the innovations' scale.
+  [[nodiscard]] double log_likelihood() const { return -0.5 * blocks * std::log(square / blocks); }
+  [[nodiscard]] double restricted_log_likelihood() const {
+    return -0.5 * freedom * std::log(square) - 0.5 * equations.log_determinant();
+  }
+};
+
+// Prior of the last coefficients: zero, with equal variances.
+struct Prior {
+  Eigen::Index coefficients = 0;
+  double weight = 0.0;  // white variance of a block mean / variance of a coefficient
 };
 
 // columns: measurement, then regressors, not whitened.
-WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns);
+WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,
+                         const Prior& prior = {});
 
 struct NoiseFit {
   NoiseShape shape;

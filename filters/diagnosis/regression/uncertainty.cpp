@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "filters/diagnosis/regression/design.h"
-#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -22,37 +21,6 @@ constexpr int kFineGrid = 9;       // values per parameter in the second grid
 constexpr double kLogRange = 2.0;
 constexpr double kLogStep = 0.05;
 
-struct Solved {
-  double log_likelihood = -1e300;  // restricted, with concentrated white variance
-  double white_variance = 0.0;
-  Eigen::VectorXd values;
-  Eigen::MatrixXd covariance;
-};
-
-// known: prior standard deviations of the last columns' values, infinite if unknown.
-Solved solve_at(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
-                const NoiseShape& shape, double white_guess) {
-  Columns white = columns;
-  const Whitening filter(grid, shape);
-  filter.apply(white);
-  const Eigen::Index p = columns.cols() - 1;
-  Eigen::MatrixXd gram = white.transpose() * white;
-  const double innovation = white_guess * filter.innovation_variance();
-  for (Eigen::Index i = 0; i < p; ++i) {
-    if (std::isfinite(known[i])) gram(1 + i, 1 + i) += innovation / (known[i] * known[i]);
-  }
-  const NormalEquations fit = NormalEquations::of_measured_first(gram);
-  const auto n = static_cast<double>(grid.used());
-  const double free = std::max(1.0, n - static_cast<double>(p));
-  const double square = std::max(gram(0, 0) - fit.explained(), 1e-12 * gram(0, 0) + 1e-300);
-  Solved solved;
-  solved.values = fit.coefficients();
-  solved.covariance = square / free * fit.inverse();
-  solved.white_variance = square / free / filter.innovation_variance();
-  solved.log_likelihood = -0.5 * free * std::log(square) - 0.5 * fit.log_determinant();
-  return solved;
-}
-
 std::vector<double> logarithmic(double low, double high, int count) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
@@ -63,7 +31,7 @@ std::vector<double> logarithmic(double low, double high, int count) {
 
 struct Tried {
   NoiseShape shape;
-  Solved solved;
+  WhitenedFit fit;
 };
 
 template <class Evaluate>
@@ -83,7 +51,7 @@ std::vector<Tried> try_all(const NoiseShape& base, const std::vector<double>& wa
 
 double best_of(const std::vector<Tried>& tried) {
   double best = -1e300;
-  for (const Tried& each : tried) best = std::max(best, each.solved.log_likelihood);
+  for (const Tried& each : tried) best = std::max(best, each.fit.restricted_log_likelihood());
   return best;
 }
 
@@ -94,47 +62,40 @@ std::pair<double, double> span_of(const std::vector<Tried>& tried, double NoiseS
   double low = 1e300;
   double high = 0.0;
   for (const Tried& each : tried) {
-    if (each.solved.log_likelihood < least) continue;
+    if (each.fit.restricted_log_likelihood() < least) continue;
     low = std::min(low, each.shape.*parameter);
     high = std::max(high, each.shape.*parameter);
   }
   return {std::max(low / step, limits.first), std::min(high * step, limits.second)};
 }
 
-}  // namespace
-
-Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,
-                         const Eigen::VectorXd& coefficients, Eigen::Index nuisances,
-                         std::vector<std::size_t>* of) {
-  std::vector<Eigen::VectorXd> found;
-  Eigen::Index at = nuisances;
+std::vector<SearchedParameter> searched_parameters(const std::vector<Candidate>& effects) {
+  std::vector<SearchedParameter> found;
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    const Candidate& effect = effects[i];
-    const double scale = coefficients[at++] / (2.0 * kLogStep);
-    if (effect.is_transition()) {
-      for (const bool middle : {false, true}) {
-        Candidate less = effect;
-        Candidate more = effect;
-        (middle ? less.centre : less.half_width) -= kLogStep * effect.half_width;
-        (middle ? more.centre : more.half_width) += kLogStep * effect.half_width;
-        found.push_back(scale * (regressor(data, more) - regressor(data, less)));
-      }
-      if (of) of->push_back(i);
-    } else if (effect.searched()) {
-      Candidate less = effect;
-      Candidate more = effect;
-      less.time_constant_s *= std::exp(-kLogStep);
-      more.time_constant_s *= std::exp(kLogStep);
-      found.push_back(scale * (regressor(data, more) - regressor(data, less)));
+    if (effects[i].is_transition()) {
+      found.push_back({i, &Candidate::half_width});
+      found.push_back({i, &Candidate::centre});
+    } else if (effects[i].searched()) {
+      found.push_back({i, &Candidate::time_constant_s});
     }
-    if (of && effect.searched()) of->push_back(i);
   }
-  Columns columns(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(found.size()));
-  for (std::size_t j = 0; j < found.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = found[j];
-  return columns;
+  return found;
 }
 
-namespace {
+// Derivatives of the sum of the effects by the searched parameters, one column each.
+Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,
+                         const std::vector<SearchedParameter>& searched,
+                         const Eigen::VectorXd& coefficients) {
+  Columns columns(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(searched.size()));
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const SearchedParameter& each = searched[static_cast<std::size_t>(j)];
+    const Candidate& effect = effects[each.effect];
+    const double scale = coefficients[static_cast<Eigen::Index>(each.effect)] / (2.0 * kLogStep);
+    columns.col(j) = scale * (regressor(data, each.moved(effect, kLogStep)) -
+                              regressor(data, each.moved(effect, -kLogStep)));
+  }
+  return columns;
+}
 
 // Evaluates walks and flickers that the record allows: first a coarse grid, then finer ones, because a long
 // record may leave one point of the coarse grid.
@@ -162,43 +123,55 @@ std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Eval
 // Averages, weighted by the restricted likelihood.
 void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& fit) {
   const double top = best_of(tried);
-  double sum = 0.0;
-  for (const Tried& each : tried) sum += std::exp(each.solved.log_likelihood - top);
-  const Eigen::Index p = tried.front().solved.values.size();
+  std::vector<double> weights;
+  for (const Tried& each : tried) weights.push_back(std::exp(each.fit.restricted_log_likelihood() - top));
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const Eigen::Index p = tried.front().fit.coefficients().size();
   fit.values = Eigen::VectorXd::Zero(p);
-  for (const Tried& each : tried) {
-    const double weight = std::exp(each.solved.log_likelihood - top) / sum;
-    const double white = each.solved.white_variance;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const double white = tried[i].fit.white_variance();
+    const NoiseShape& shape = tried[i].shape;
+    weights[i] /= sum;
     fit.noise.parts.push_back(
-        {weight, white * grid.block_s, each.shape.walk * white / grid.block_s, each.shape.flicker * white});
-    fit.values += weight * each.solved.values;
+        {weights[i], white * grid.block_s, shape.walk * white / grid.block_s, shape.flicker * white});
+    fit.values += weights[i] * tried[i].fit.coefficients();
   }
   for (const double blocks : flicker_bank(grid)) fit.noise.flicker_s.push_back(blocks * grid.block_s);
   fit.covariance = Eigen::MatrixXd::Zero(p, p);
-  for (const Tried& each : tried) {
-    const double weight = std::exp(each.solved.log_likelihood - top) / sum;
-    const Eigen::VectorXd away = each.solved.values - fit.values;
-    fit.covariance += weight * (each.solved.covariance + away * away.transpose());
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const Eigen::VectorXd away = tried[i].fit.coefficients() - fit.values;
+    fit.covariance += weights[i] * (tried[i].fit.covariance() + away * away.transpose());
   }
 }
 
 }  // namespace
 
+Candidate SearchedParameter::moved(Candidate candidate, double by) const {
+  if (value == &Candidate::centre)
+    candidate.centre += by * candidate.half_width;
+  else
+    candidate.*value *= std::exp(by);
+  return candidate;
+}
+
+std::string_view SearchedParameter::name_in(const Effect& of) const {
+  if (value == &Candidate::centre) return "";
+  return value == &Candidate::half_width ? kHalfWidth : time_constant_name(of);
+}
+
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best,
                    const Eigen::VectorXd* coefficients) {
   const BlockGrid& grid = data.grid;
   JointFit fit;
+  if (coefficients) fit.searched = searched_parameters(effects);
   const Columns base = design(data, effects);
-  Columns more(base.rows(), 0);
-  if (coefficients) more = searched_columns(data, effects, *coefficients, grid.constants(), &fit.searched);
-  Columns columns(base.rows(), base.cols() + more.cols());
-  columns << base, more;
-  Eigen::VectorXd known =
-      Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity());
-  known.tail(more.cols()).setConstant(kLogRange);
-  const auto evaluate = [&](const NoiseShape& shape) {
-    return solve_at(grid, columns, known, shape, best.white_variance);
-  };
+  Columns columns(base.rows(), base.cols() + static_cast<Eigen::Index>(fit.searched.size()));
+  columns.leftCols(base.cols()) = base;
+  if (coefficients)
+    columns.rightCols(columns.cols() - base.cols()) =
+        searched_columns(data, effects, fit.searched, *coefficients);
+  const Prior prior{columns.cols() - base.cols(), best.white_variance / (kLogRange * kLogRange)};
+  const auto evaluate = [&](const NoiseShape& shape) { return fit_whitened(grid, shape, columns, prior); };
   average(grid, try_noise(grid, best.shape, evaluate), fit);
   return fit;
 }

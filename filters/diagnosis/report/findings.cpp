@@ -29,9 +29,14 @@ std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& va
   return used;
 }
 
-bool is_searched(const ModelParameter& parameter, const Effect& effect) {
-  if (effect.form == name_of(Form::kTransition)) return parameter.name == kHalfWidth;
-  return parameter.name == time_constant_name(effect);
+// Index in the joint fit of parameter `at` of an effect; -1 if it has none there.
+Eigen::Index index_in(const JointFit& joint, const BlockGrid& grid, std::size_t i, const Effect& effect,
+                      std::size_t at) {
+  if (at == 0) return column_of(grid, i) - 1;
+  for (std::size_t j = 0; j < joint.searched.size(); ++j)
+    if (joint.searched[j].effect == i && joint.searched[j].name_in(effect) == effect.parameters[at].name)
+      return joint.first_searched() + static_cast<Eigen::Index>(j);
+  return -1;
 }
 
 // Capture that would distinguish two effects.
@@ -60,32 +65,22 @@ std::string capture_that_separates(const BlockData& data, const Candidate& one, 
 
 }  // namespace
 
-std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidate>& candidates,
-                               const Eigen::VectorXd& coefficients, const std::string& axis) {
-  Eigen::Index at = data.grid.constants();
-  std::vector<Effect> effects;
-  for (const Candidate& candidate : candidates) {
-    effects.push_back(effect_of(data, candidate));
-    effects.back().axis = axis;
-    effects.back().parameters.front().value = coefficients[at++];
-  }
-  return effects;
+Effect effect_with(const BlockData& data, const Candidate& candidate, double coefficient,
+                   const std::string& axis) {
+  Effect effect = effect_of(data, candidate);
+  effect.axis = axis;
+  effect.parameters.front().value = coefficient;
+  return effect;
 }
 
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
-  JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.noise, &found.coefficients);
-  const Eigen::Index linear = found.coefficients.size();
+  const Eigen::VectorXd coefficients = coefficients_of(found.chosen);
+  JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.noise, &coefficients);
+  const Eigen::Index linear = joint.first_searched();
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
-    Candidate& candidate = found.chosen[joint.searched[j]].candidate;
-    const double near =
-        std::clamp(joint.values[linear + static_cast<Eigen::Index>(j)], -kFarthest, kFarthest);
-    const bool second = j > 0 && joint.searched[j - 1] == joint.searched[j];
-    if (!candidate.is_transition())
-      candidate.time_constant_s *= std::exp(near);
-    else if (second)
-      candidate.centre += near * candidate.half_width;
-    else
-      candidate.half_width *= std::exp(near);
+    Candidate& candidate = found.chosen[joint.searched[j].effect].candidate;
+    const double by = std::clamp(joint.values[linear + static_cast<Eigen::Index>(j)], -kFarthest, kFarthest);
+    candidate = joint.searched[j].moved(candidate, by);
   }
   // The searched parameters have moved, so the coefficients' covariance is taken from the joint one.
   joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
@@ -94,8 +89,8 @@ JointFit settle(const BlockData& reconstructed, SearchResult& found) {
     joint.values.head(linear) = there.values.head(linear);
     joint.of_coefficients = there.covariance.topLeftCorner(linear, linear);
   }
-  found.coefficients = joint.values.head(linear);
-  found.covariance = joint.covariance.topLeftCorner(linear, linear);
+  for (std::size_t i = 0; i < found.chosen.size(); ++i)
+    found.chosen[i].coefficient = joint.values[column_of(reconstructed.grid, i) - 1];
   return joint;
 }
 
@@ -132,10 +127,10 @@ void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effect
     const ModelParameter& size = effect.parameters.front();
     if (series || !(std::abs(size.value) > kWellKnown * size.std_error)) continue;
     const std::string& of = effect.form == name_of(Form::kProduct) ? effect.with_channel : effect.channel;
-    for (const FineChannel& channel : data.channels)
-      if (channel.name == of)
-        effect.parameters.push_back(
-            {std::string(kCurveReach), channel.high - channel.low, 0.0, std::string(unit_of(of))});
+    if (const std::optional<std::size_t> channel = data.index_of(of))
+      effect.parameters.push_back({std::string(kCurveReach),
+                                   data.channels[*channel].high - data.channels[*channel].low, 0.0,
+                                   unit_of(of)});
   }
 }
 
@@ -145,24 +140,21 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
   const BlockGrid& grid = data.grid;
   const Columns columns = design(data, candidates_of(found.chosen));
   const double total = variance_of(used_values(grid, grid.error));
-  Eigen::Index at = grid.constants();
-  Eigen::Index searched = found.coefficients.size();
-  for (const Chosen& chosen : found.chosen) {
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    const Chosen& chosen = found.chosen[i];
     FoundEffect effect;
-    effect.effect = effect_of(data, chosen.candidate);
-    effect.effect.axis = axis;
+    effect.effect = effect_with(data, chosen.candidate, chosen.coefficient, axis);
     effect.p_value = chosen.p_value;
     effect.likelihood_ratio = chosen.likelihood_ratio;
-    ModelParameter& coefficient = effect.effect.parameters.front();
-    coefficient.value = joint.values[at];
-    coefficient.std_error = std::sqrt(joint.covariance(at, at));
-    Eigen::VectorXd part = columns.col(1 + at) * coefficient.value;
-    if (chosen.candidate.searched()) {
-      const double sigma = std::sqrt(joint.covariance(searched, searched));
-      searched += chosen.candidate.is_transition() ? 2 : 1;
-      for (ModelParameter& parameter : effect.effect.parameters)
-        if (is_searched(parameter, effect.effect)) parameter.std_error = sigma * parameter.value;
+    std::vector<ModelParameter>& parameters = effect.effect.parameters;
+    const Eigen::Index at = column_of(grid, i) - 1;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const Eigen::Index index = index_in(joint, grid, i, effect.effect, k);
+      if (index < 0) continue;
+      const double sigma = std::sqrt(joint.covariance(index, index));
+      parameters[k].std_error = k == 0 ? sigma : sigma * parameters[k].value;
     }
+    Eigen::VectorXd part = columns.col(1 + at) * chosen.coefficient;
     // p-value from the fit's error bar, if that is less significant than the likelihood ratio.
     if (joint.of_coefficients(at, at) > 0.0) {
       const double z = joint.values[at] / std::sqrt(joint.of_coefficients(at, at));
@@ -173,26 +165,16 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
     findings.parts.push_back(std::move(part));
-    ++at;
     findings.effects.push_back(std::move(effect));
   }
 }
 
-void add_alternatives(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
-                      const std::string& axis, Findings& findings) {
-  for (const Alternative& alternative : found.alternatives) {
-    std::vector<Candidate> instead = candidates_of(found.chosen);
-    instead[alternative.of] = alternative.candidate;
-    const Eigen::VectorXd fitted =
-        solve(reconstructed.grid, found.noise.shape, design(reconstructed, instead));
-    Indistinguishable pair;
-    pair.effects = {findings.effects[alternative.of].effect,
-                    effects_of(reconstructed, instead, fitted, axis)[alternative.of]};
-    pair.correlation = alternative.correlation;
-    pair.separate_by =
-        capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
-    findings.pairs.push_back(std::move(pair));
-  }
+void add_alternatives(const BlockData& data, const SearchResult& found, Findings& findings) {
+  for (const Alternative& alternative : found.alternatives)
+    findings.pairs.push_back(
+        {{findings.effects[alternative.of].effect, effect_of(data, alternative.candidate)},
+         alternative.correlation,
+         capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate)});
 }
 
 // On one heading the Earth's rate in a tilting axis cannot be distinguished from g-sensitivity: same
@@ -215,49 +197,39 @@ void add_earth_rate(Findings& findings) {
 
 }  // namespace
 
-Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
-                     const JointFit& joint, const std::string& axis) {
+Findings findings_of(const BlockData& data, const SearchResult& found, const JointFit& joint,
+                     const std::string& axis) {
   Findings findings;
   add_effects(data, found, joint, axis, findings);
   follow_known_curves(data, findings.effects);
-  add_alternatives(data, reconstructed, found, axis, findings);
+  add_alternatives(data, found, findings);
   add_earth_rate(findings);
   return findings;
 }
 
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
-                                  Eigen::Index nuisances, std::size_t jointly) {
+                                  const BlockGrid& grid, std::size_t jointly) {
   struct Row {
-    Eigen::Index column = -1;  // of the joint fit
-    double scale = 1.0;        // parameter / that column's unit
-    double alone = 0.0;        // variance of a parameter that is not in the joint fit
+    Eigen::Index index = -1;  // in the joint fit
+    double scale = 1.0;       // parameter / that value's unit
+    double alone = 0.0;       // variance of a parameter that is not in the joint fit
   };
   std::vector<Row> rows;
-  Eigen::Index at = nuisances;
-  Eigen::Index searched = joint.values.size() - static_cast<Eigen::Index>(joint.searched.size());
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Effect& effect = effects[i].effect;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const ModelParameter& parameter = effect.parameters[j];
-      Row row;
-      row.alone = parameter.std_error * parameter.std_error;
-      if (i < jointly && j == 0) row.column = at++;
-      if (i < jointly && j > 0 && is_searched(parameter, effect)) {
-        row.column = searched++;
-        row.scale = parameter.value;
-      }
-      rows.push_back(row);
+      rows.push_back({i < jointly ? index_in(joint, grid, i, effect, j) : -1, j == 0 ? 1.0 : parameter.value,
+                      parameter.std_error * parameter.std_error});
     }
-    if (i < jointly && effect.form == name_of(Form::kTransition)) ++searched;  // its centre
   }
   const std::size_t n = rows.size();
   std::vector<double> covariance(n * n, 0.0);
   for (std::size_t a = 0; a < n; ++a) {
     covariance[a * n + a] = rows[a].alone;
     for (std::size_t b = 0; b < n; ++b) {
-      if (rows[a].column < 0 || rows[b].column < 0) continue;
-      covariance[a * n + b] =
-          rows[a].scale * rows[b].scale * joint.covariance(rows[a].column, rows[b].column);
+      if (rows[a].index < 0 || rows[b].index < 0) continue;
+      covariance[a * n + b] = rows[a].scale * rows[b].scale * joint.covariance(rows[a].index, rows[b].index);
     }
   }
   return covariance;
@@ -282,7 +254,7 @@ bool is_zero_within(const Effect& effect, const std::vector<ChannelRange>& range
 
 std::vector<double> means_of_corrections(const std::vector<FoundEffect>& effects,
                                          const std::vector<ChannelRange>& ranges,
-                                         const Eigen::RowVectorXd& of_chosen) {
+                                         const Eigen::VectorXd& of_chosen) {
   std::vector<double> means;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Effect& effect = effects[i].effect;

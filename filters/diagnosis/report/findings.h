@@ -19,23 +19,21 @@ struct Findings {
   std::vector<Indistinguishable> pairs;  // of the effects
 };
 
-// Takes coefficients, time constants and errors from `joint`. reconstructed: data with reconstructed
-// channels.
-Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
-                     const JointFit& joint, const std::string& axis);
+// Takes coefficients, time constants and errors from `joint`. data: channels as they were read.
+Findings findings_of(const BlockData& data, const SearchResult& found, const JointFit& joint,
+                     const std::string& axis);
 
-// Effects with these coefficients, constants first.
-std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidate>& candidates,
-                               const Eigen::VectorXd& coefficients, const std::string& axis);
+Effect effect_with(const BlockData& data, const Candidate& candidate, double coefficient,
+                   const std::string& axis);
 
 // Row-major, of all parameters of all effects: first those of `joint`, the others without correlation.
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
-                                  Eigen::Index nuisances, std::size_t jointly);
+                                  const BlockGrid& grid, std::size_t jointly);
 
 // Diagnosis::means. of_chosen: means of the regressors of the first effects, zero if not corrected.
 std::vector<double> means_of_corrections(const std::vector<FoundEffect>& effects,
                                          const std::vector<ChannelRange>& ranges,
-                                         const Eigen::RowVectorXd& of_chosen);
+                                         const Eigen::VectorXd& of_chosen);
 
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects);
 

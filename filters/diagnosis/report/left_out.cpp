@@ -98,9 +98,10 @@ std::string unlike_reference_in_words(const std::vector<Record>& records,
 }
 
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
-                            const std::vector<std::string>& ramps) {
+                            const std::vector<FoundEffect>& ramps) {
   std::map<std::string, std::string> names;  // by reason
-  std::set<std::string> seen(ramps.begin(), ramps.end());
+  std::set<std::string> seen;
+  for (const FoundEffect& ramp : ramps) seen.insert(ramp.effect.channel);
   for (const Record& record : records) {
     for (const RecordChannel& channel : record.channels) {
       if (!seen.insert(channel.name).second) continue;

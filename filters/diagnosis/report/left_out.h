@@ -33,8 +33,8 @@ std::string unlike_reference_in_words(const std::vector<Record>& records,
                                       const std::vector<EvenError>& errors, double sample_s);
 
 // Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
-// there is none. ramps: channels already used by a ramp.
+// there is none. ramps: effects that already use channels.
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
-                            const std::vector<std::string>& ramps);
+                            const std::vector<FoundEffect>& ramps);
 
 }  // namespace ifog

@@ -7,12 +7,9 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <string_view>
 
-#include "filters/diagnosis/regression/uncertainty.h"
+#include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/residual/hysteresis.h"
-#include "filters/effects/curve_reach.h"
-#include "filters/effects/reach.h"
 
 namespace ifog {
 namespace {
@@ -55,43 +52,29 @@ double along(const HeadingWeights& weights, const Eigen::VectorXd& column) {
   return sum;
 }
 
-// Capture as the correction sees it: channels limited to the fitted range, or to the range to which a
-// polynomial is extrapolated.
-BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges, bool goes_on) {
-  for (FineChannel& channel : data.channels) {
-    for (const ChannelRange& range : ranges) {
-      if (range.channel != channel.name) continue;
-      for (double& value : channel.values) {
-        const Reach reach = reach_of(value, range);
-        value = goes_on ? reach.value : reach.edge;
-      }
-    }
-  }
-  return data;
+// Regressor if a parameter of the effect, not the coefficient, is `factor` times as large.
+Eigen::VectorXd regressor_with(const BlockData& next, Effect effect, std::size_t parameter, double factor) {
+  effect.parameters[parameter].value *= factor;
+  return regressor(next, *candidate_of(next, effect));
 }
 
-// Effects on one capture and their derivatives by each parameter.
+// Effects on one capture whose channels stay within the fitted ranges.
 struct Effects {
-  Columns gradient;           // by parameter, in the order of the model's covariance; zero if not corrected
-  Eigen::VectorXd left;       // residual of the corrected effects, rad/s
-  Eigen::VectorXd going_on;   // effects that are present but not corrected
-  std::vector<Effect> lines;  // not corrected, phase unknown
+  Columns gradient;             // by parameter, in the order of the model's covariance; zero if not corrected
+  Eigen::VectorXd uncorrected;  // rad/s
+  std::vector<Effect> lines;    // not corrected, phase unknown
 };
 
-// held: channels limited to their ranges; followed: extrapolated as a linear form is. For higher powers,
-// extrapolated by the tangent, the larger error (held) is used. ramp_s: duration for which a time ramp was
-// fitted; it continues as long again. nullopt: ramp not corrected.
-Effects effects_on(const BlockData& next, const BlockData& held, const BlockData& followed,
-                   std::optional<double> ramp_s, const std::vector<Effect>& effects) {
+Effects effects_on(const BlockData& next, const std::vector<FoundEffect>& effects) {
+  constexpr double kStep = 0.05;  // of a parameter, for the derivative
   const auto n = static_cast<Eigen::Index>(next.grid.size());
-  std::size_t parameters = 0;
-  for (const Effect& effect : effects) parameters += effect.parameters.size();
-  Effects on{Columns::Zero(n, static_cast<Eigen::Index>(parameters)),
-             Eigen::VectorXd::Zero(n),
-             Eigen::VectorXd::Zero(n),
-             {}};
+  Eigen::Index parameters = 0;
+  for (const FoundEffect& found : effects)
+    parameters += static_cast<Eigen::Index>(found.effect.parameters.size());
+  Effects on{Columns::Zero(n, parameters), Eigen::VectorXd::Zero(n), {}};
   Eigen::Index row = 0;
-  for (const Effect& effect : effects) {
+  for (const FoundEffect& found : effects) {
+    const Effect& effect = found.effect;
     const Eigen::Index at = row;
     row += static_cast<Eigen::Index>(effect.parameters.size());
     if (effect.shown_only) continue;  // rotation, which the heading follows
@@ -100,40 +83,22 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
       continue;
     }
     const std::optional<Candidate> candidate = candidate_of(next, effect);
-    if (!candidate || candidate->form == Form::kStep || effect.parameters.empty()) continue;
-    const double coefficient = effect.parameters[0].value;
-    const Eigen::VectorXd column = regressor(next, *candidate);
-    if (candidate->form == Form::kDeadZone || (candidate->form == Form::kRateRamp && !ramp_s)) {
-      on.going_on += coefficient * column;
+    if (!candidate || candidate->form == Form::kStep) continue;
+    const double coefficient = effect.parameters.front().value;
+    if (candidate->form == Form::kDeadZone) {
+      on.uncorrected += coefficient * regressor(next, *candidate);
       continue;
     }
-    on.gradient.col(at) = column;
-    if (candidate->form == Form::kRateRamp) {
-      on.left += coefficient * (column.array() - 2.0 * *ramp_s).cwiseMax(0.0).matrix();
-      continue;
-    }
-    const bool tangent = (power_of(candidate->form) > 1 && parameter(effect, kCurveReach) == 0.0) ||
-                         candidate->form == Form::kLookup;
-    on.left += coefficient * (column - regressor(tangent ? held : followed, *candidate));
-    // By the logarithm of a time constant or half width.
-    const double searched = candidate->is_transition() ? candidate->half_width : candidate->time_constant_s;
-    if (!(searched > 0.0)) continue;
-    const std::string_view name = candidate->is_transition() ? kHalfWidth : time_constant_name(effect);
-    const Columns by_logarithm =
-        searched_columns(next, {*candidate}, Eigen::VectorXd::Constant(1, coefficient), 0);
+    on.gradient.col(at) = regressor(next, *candidate);
     for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
-      if (effect.parameters[j].name == name)
-        on.gradient.col(at + static_cast<Eigen::Index>(j)) = by_logarithm.col(0) / searched;
+      if (!(effect.parameters[j].std_error > 0.0)) continue;
+      const double scale = coefficient / (2.0 * kStep * effect.parameters[j].value);
+      on.gradient.col(at + static_cast<Eigen::Index>(j)) =
+          scale *
+          (regressor_with(next, effect, j, 1.0 + kStep) - regressor_with(next, effect, j, 1.0 - kStep));
     }
   }
   return on;
-}
-
-void add_loop(const BlockData& data, const Hysteresis& known, Eigen::VectorXd& to) {
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (data.channels[c].name == known.channel)
-      to += known.coefficient * hysteresis_loop(data, c, known.half_width);
-  }
 }
 
 // Mean square over all phases of a line of this frequency and amplitude.
@@ -203,15 +168,10 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   HeadingPrediction prediction;
   prediction.aligned_s = aligned_s;
   prediction.after_s = after_s;
-  std::vector<Effect> mine;
-  for (const FoundEffect& found : diagnosis.effects) mine.push_back(found.effect);
-  const BlockData held = held_in_range(data, diagnosis.ranges, false);
-  const BlockData followed = held_in_range(data, diagnosis.ranges, true);
-  std::optional<double> ramp_s;
-  for (const ChannelRange& range : diagnosis.ranges)
-    if (range.channel == kTimeRange) ramp_s = range.high - range.low;
-  Effects on = effects_on(data, held, followed, ramp_s, mine);
-  if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
+  Effects on = effects_on(data, diagnosis.effects);
+  if (const auto& loop = diagnosis.hysteresis)
+    if (const std::optional<std::size_t> channel = data.index_of(loop->channel))
+      on.uncorrected += loop->coefficient * hysteresis_loop(data, *channel, loop->half_width);
   const auto n = static_cast<Eigen::Index>(on.gradient.cols());
   const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
   for (const double horizon : after_s) {
@@ -223,7 +183,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
       const Eigen::Map<const Columns> covariance(diagnosis.covariance.data(), n, n);
       square += std::max(0.0, g.dot(covariance * g));
     }
-    square += std::pow(along(weights, on.left), 2) + std::pow(along(weights, on.going_on), 2);
+    square += std::pow(along(weights, on.uncorrected), 2);
     for (const Effect& line : on.lines) square += line_square(weights, line);
     prediction.sigma_rad.push_back(std::sqrt(square));
   }

@@ -10,8 +10,8 @@
 namespace ifog {
 
 // Bias: mean over aligned_s; the angle is integrated from there to each of after_s. next: its times and
-// channels are used, and its reference if effects need it. An effect without a channel there counts as absent
-// and not corrected.
+// channels are used, and its reference if effects need it; the channels are taken to be within the fitted ranges.
+// An effect without a channel there counts as absent.
 HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s);
 

@@ -25,18 +25,19 @@ double error_in_means(std::span<const double> error) {
 
 }  // namespace
 
-void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::RowVectorXd& means,
+void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::VectorXd& means,
                const std::string& axis, Diagnosis& diagnosis) {
   constexpr double kClear = 5.0;  // in standard deviations
   std::vector<double> spans_s;
   for (const BlockRange& record : grid.records)
     spans_s.push_back(static_cast<double>(record.size()) * grid.block_s);
   const double by_noise = mean_variance(joint.noise, spans_s);
-  const Eigen::Index p = means.size() - 1;
-  const Eigen::RowVectorXd of_effects = means.tail(p);
-  const double value = means[0] - of_effects.dot(joint.values.head(p));
+  const Eigen::Index first = grid.constants(), count = means.size() - 1;
+  const Eigen::VectorXd of_effects = means.tail(count);
+  const double value = means[0] - of_effects.dot(joint.values.segment(first, count));
   const double variance =
-      by_noise + std::max(0.0, (of_effects * joint.covariance.topLeftCorner(p, p)).dot(of_effects));
+      by_noise +
+      std::max(0.0, of_effects.dot(joint.covariance.block(first, first, count, count) * of_effects));
   const double sigma = std::sqrt(variance);
   const bool clear = std::abs(value) > kClear * sigma;
   // A bias that noise may have caused is corrected by the share of its square above the noise's. The effects'
@@ -71,13 +72,12 @@ class Uncorrected {
  public:
   Uncorrected(const BlockData& data, const SearchResult& found)
       : grid_(data.grid), shown_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.grid.size()))) {
-    Eigen::Index at = grid_.constants();
-    for (const Candidate& each : candidates_of(found.chosen)) {
-      const double coefficient = found.coefficients[at++];
-      if (each.shown())
-        shown_ += coefficient * regressor(data, each);
-      else if (!each.corrected())
-        steps_.push_back({each.record, each.time_s, coefficient});
+    for (const Chosen& each : found.chosen) {
+      const Candidate& effect = each.candidate;
+      if (effect.shown())
+        shown_ += each.coefficient * regressor(data, effect);
+      else if (!effect.corrected())
+        steps_.push_back({effect.record, effect.time_s, each.coefficient});
     }
   }
 
@@ -109,7 +109,8 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
   const Uncorrected uncorrected(data, found);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
   if (!found.chosen.empty())
-    change = held_out_change(data, candidates_of(found.chosen), found.noise.shape, found.coefficients);
+    change =
+        held_out_change(data, candidates_of(found.chosen), found.noise.shape, coefficients_of(found.chosen));
   for (std::size_t r = 0; r < errors.size(); ++r) {
     EvenError& error = errors[r];
     error.written = error.before;

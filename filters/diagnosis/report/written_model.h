@@ -16,7 +16,7 @@ namespace ifog {
 // Sets the bias relative to a reference, which the model corrects: the mean that the corrected effects leave.
 // means: from means_of(), zero for effects that are not corrected. The bias is also added as an effect `bias` if
 // it exceeds five standard deviations.
-void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::RowVectorXd& means,
+void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::VectorXd& means,
                const std::string& axis, Diagnosis& diagnosis);
 
 // Fills `written`, `after` and `held_out` of each error with the daemon's correction by the model from

@@ -7,6 +7,7 @@
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/distributions/median.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -72,8 +73,16 @@ double without_best_passage(std::vector<Slow> inside) {
   return all - most;
 }
 
-}  // namespace
+struct DeadZone {
+  double half_width = 0.0;  // rad/s
+  double half_width_error = 0.0;
+  double coefficient = 0.0;  // error / rate inside; -1 if no rotation is sensed
+  double coefficient_error = 0.0;
+  double ratio = 0.0;  // gain of twice the log-likelihood
+  double p_value = 1.0;
+};
 
+// rates: true rates on the grid of the errors, by record, NaN missing; white_variance: of a sample.
 std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
                                        const std::vector<Samples>& rates, double white_variance,
                                        double significance) {
@@ -117,6 +126,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   return zone;
 }
 
+// Error that the zone causes, by sample; zero where the rate is missing.
 Samples hidden_by(const DeadZone& zone, std::span<const double> rate) {
   Samples hidden;
   hidden.reserve(rate.size());
@@ -125,9 +135,34 @@ Samples hidden_by(const DeadZone& zone, std::span<const double> rate) {
   return hidden;
 }
 
-void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid& grid,
-              std::vector<EvenError>& errors) {
-  for (std::size_t r = 0; r < errors.size(); ++r) take_out(hidden_by(zone, rates[r]), r, grid, errors[r]);
+}  // namespace
+
+std::optional<FoundEffect> take_out_dead_zone(const std::vector<Record>& records, const std::string& channel,
+                                              double significance, BlockGrid& grid,
+                                              std::vector<EvenError>& errors) {
+  std::vector<Samples> rates;
+  for (const Record& record : records)
+    rates.push_back(on_even_grid(record, grid.sample_s, record.reference_radps));
+  const auto zone = find_dead_zone(errors, rates, grid.white_variance, significance);
+  if (!zone) return std::nullopt;
+  FoundEffect found;
+  Effect& effect = found.effect;
+  effect.form = name_of(Form::kDeadZone);
+  effect.channel = channel;
+  effect.parameters = {{"coefficient", zone->coefficient, zone->coefficient_error, coefficient_unit(effect)},
+                       {std::string(kHalfWidth), zone->half_width, zone->half_width_error, "rad/s"}};
+  effect.meaning = meaning_of(effect);
+  found.p_value = zone->p_value;
+  found.likelihood_ratio = zone->ratio;
+  double explained = 0.0, total = 0.0;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    const Samples hidden = hidden_by(*zone, rates[r]);
+    explained += variance_of(hidden);
+    total += variance_of(*errors[r].before);
+    take_out(hidden, r, grid, errors[r]);
+  }
+  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  return found;
 }
 
 }  // namespace ifog

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <iterator>
 
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
@@ -13,8 +13,7 @@ namespace {
 
 // Half widths of the play relative to the channel's range; neighbours correlate above 0.9.
 constexpr std::array kShares = {0.05, 0.07, 0.1, 0.14, 0.19, 0.25, 0.33};
-constexpr double kCertainLoop = 0.1;     // of the significance; strict, because a loop is not corrected
-constexpr double kLoopParameters = 3.0;  // size, width, and the channel's linear effect
+constexpr double kCertainLoop = 0.1;  // of the significance; strict, because a loop is not corrected
 
 bool may_have_a_loop(const BlockData& data, std::size_t channel) {
   const FineChannel& c = data.channels[channel];
@@ -35,12 +34,12 @@ std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std:
   for (const double share : kShares) {
     const double width = share * (source.high - source.low);
     columns.rightCols(1) = hysteresis_loop(data, channel, width);
-    const double value = fit_whitened(data.grid, shape, columns).log_likelihood;
+    const double value = fit_whitened(data.grid, shape, columns).log_likelihood();
     if (value > most) most = value, loop.half_width = width;
   }
   columns.rightCols(1) = hysteresis_loop(data, channel, loop.half_width);
   const NoiseFit best = fit_noise(data.grid, columns, shape);
-  loop.coefficient = solve(data.grid, best.shape, columns).tail(1)[0];
+  loop.coefficient = fit_whitened(data.grid, best.shape, columns).coefficients().tail(1)[0];
   return {loop, best};
 }
 
@@ -65,41 +64,29 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
 }
 
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid) {
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (data.channels[c].name != loop.channel) continue;
-    const Eigen::VectorXd column = hysteresis_loop(data, c, loop.half_width);
-    for (std::size_t b = 0; b < grid.size(); ++b) {
-      const auto row = static_cast<Eigen::Index>(b);
-      if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
-    }
+  const Eigen::VectorXd column = hysteresis_loop(data, *data.index_of(loop.channel), loop.half_width);
+  for (std::size_t b = 0; b < grid.size(); ++b) {
+    const auto row = static_cast<Eigen::Index>(b);
+    if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
   }
 }
 
 std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vector<Candidate>& model,
                                           const NoiseFit& noise, double significance) {
   std::optional<Hysteresis> found;
-  const double each_parameter = std::log(static_cast<double>(data.grid.used()));
   const double tries = kProfiled * static_cast<double>(kShares.size() * data.channels.size());
   for (std::size_t c = 0; c < data.channels.size() && !data.grid.dwells; ++c) {
     if (!may_have_a_loop(data, c)) continue;
     std::vector<Candidate> others;
-    double saved = -kLoopParameters;
-    bool bends = false;
-    for (const Candidate& each : model) {
-      if (each.channel != c || each.form == Form::kProduct) {
-        others.push_back(each);
-        continue;
-      }
-      saved += each.searched() ? 2.0 : 1.0;
-      bends = bends || each.form != Form::kLinear;
-    }
+    std::ranges::copy_if(model, std::back_inserter(others), [&](const Candidate& each) {
+      return each.channel != c || each.form == Form::kProduct;
+    });
     Candidate linear;
     linear.channel = c;
     others.push_back(linear);
     auto [loop, with] = likeliest_loop(data, others, c, noise.shape);
     loop.likelihood_ratio = 2.0 * (with.log_likelihood - noise.log_likelihood);
-    const bool certain = chi_squared_above(loop.likelihood_ratio, 2.0) * tries <= kCertainLoop * significance;
-    if (!certain && !(bends && loop.likelihood_ratio + each_parameter * saved > 0.0)) continue;
+    if (chi_squared_above(loop.likelihood_ratio, 2.0) * tries > kCertainLoop * significance) continue;
     if (!found || loop.likelihood_ratio > found->likelihood_ratio) found = loop;
   }
   return found;

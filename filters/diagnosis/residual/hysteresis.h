@@ -20,9 +20,8 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
 // Subtracts a channel's loop from the error of the grid's valid blocks.
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid);
 
-// Loop of a smooth channel that explains the error better than the model's effects of that channel. Compared
-// with a linear effect: p-value with the number of widths; with more effects: Bayesian information criterion.
-// nullopt on a rate table, which has no time order.
+// Loop of a smooth channel that, in place of the model's effects of that channel, explains so much more of the error
+// that chance does not reach it with the number of widths. nullopt on a rate table, which has no time order.
 std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vector<Candidate>& model,
                                           const NoiseFit& noise, double significance);
 

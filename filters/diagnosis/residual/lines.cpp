@@ -11,6 +11,7 @@
 
 #include "filters/diagnosis/residual/periodogram.h"
 #include "filters/distributions/median.h"
+#include "filters/effects/meaning.h"
 #include "filters/series/finite_sum.h"
 
 namespace ifog {
@@ -141,6 +142,21 @@ Samples samples_of(const SpectralLine& line, const EvenError& error, double samp
   return part;
 }
 
+FoundEffect effect_of(const SpectralLine& line, double total_variance) {
+  FoundEffect found;
+  Effect& effect = found.effect;
+  effect.form = name_of(Form::kLine);
+  effect.parameters = {{"cosine", line.cosine, line.std_error, "rad/s"},
+                       {"sine", line.sine, line.std_error, "rad/s"},
+                       {"frequency_hz", line.frequency_hz, line.frequency_std_hz, "Hz"}};
+  effect.meaning = meaning_of(effect);
+  found.p_value = line.p_value;
+  found.likelihood_ratio = 2.0 * line.ratio;
+  const double power = 0.5 * (line.cosine * line.cosine + line.sine * line.sine);
+  found.variance_explained = total_variance > 0.0 ? std::min(1.0, power / total_variance) : 0.0;
+  return found;
+}
+
 // True if the error itself is smaller without the line: an effect that does not hold leaves lines of its own.
 bool is_in(std::span<const double> line, std::span<const double> error) {
   double gain = 0.0;
@@ -180,19 +196,19 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   return lines;
 }
 
-std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double sample_s,
-                                   double significance) {
-  std::vector<LineOf> found;
-  for (std::size_t r = 0; r < errors.size(); ++r)
-    for (const SpectralLine& line : find_lines(*errors[r].after, errors[r].start_s, sample_s, significance))
-      if (line.coherence >= kCoherent && is_in(samples_of(line, errors[r], sample_s), *errors[r].before))
-        found.push_back({r, line});
-  return found;
-}
-
-void take_out(const std::vector<LineOf>& lines, BlockGrid& grid, std::vector<EvenError>& errors) {
-  for (const auto& [record, line] : lines)
-    take_out(samples_of(line, errors[record], grid.sample_s), record, grid, errors[record]);
+std::vector<FoundEffect> take_out_lines(double significance, BlockGrid& grid,
+                                        std::vector<EvenError>& errors) {
+  std::vector<FoundEffect> effects;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    EvenError& error = errors[r];
+    for (const SpectralLine& line : find_lines(*error.after, error.start_s, grid.sample_s, significance)) {
+      const Samples part = samples_of(line, error, grid.sample_s);
+      if (line.coherence < kCoherent || !is_in(part, *error.before)) continue;
+      take_out(part, r, grid, error);
+      effects.push_back(effect_of(line, variance_of(*error.before)));
+    }
+  }
+  return effects;
 }
 
 }  // namespace ifog

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "filters/diagnosis/cleaning/even_error.h"
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {
@@ -34,17 +35,8 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
 // True if two bins of a record's spectrum are too near each other to be found as two peaks.
 bool are_one_peak(std::size_t one, std::size_t other);
 
-// A line in the error of a record.
-struct LineOf {
-  std::size_t record;
-  SpectralLine line;
-};
-
-// Coherent lines in each record's residual.
-std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double sample_s,
-                                   double significance);
-
-// Subtracts the lines from the residuals and from the grid's block means.
-void take_out(const std::vector<LineOf>& lines, BlockGrid& grid, std::vector<EvenError>& errors);
+// Subtracts coherent lines of each record's residual from it and from the grid's block means. Effects `line`, whose
+// share is that of the record's variance.
+std::vector<FoundEffect> take_out_lines(double significance, BlockGrid& grid, std::vector<EvenError>& errors);
 
 }  // namespace ifog

@@ -168,8 +168,9 @@ void describe_share(std::span<const double> error, std::span<const double> left,
 }  // namespace
 
 Unexplained describe_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                          const std::vector<LineOf>& lines, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, const std::vector<NoiseChangeIn>& noise_changes) {
+                          const std::vector<FoundEffect>& of_samples, const NoiseFit& noise,
+                          const BlockGrid& grid, double significance,
+                          const std::vector<NoiseChangeIn>& noise_changes) {
   const EvenError& longest = longest_of(errors);
   const double period_s = grid.sample_s, start_s = longest.origin.in_s(longest.start_s);
   Unexplained found;
@@ -180,10 +181,12 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
   const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
   if (!peaks.empty()) {
     describe_peak(peaks.front(), found);
-    for (const auto& [record, line] : lines)
-      if (found.frequency_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line.frequency_hz)))
-        found.hint = formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady",
-                               line.frequency_hz);
+    for (const FoundEffect& each : of_samples) {
+      const double line_hz = parameter(each.effect, "frequency_hz");
+      if (line_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line_hz)))
+        found.hint =
+            formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady", line_hz);
+    }
     return found;
   }
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));

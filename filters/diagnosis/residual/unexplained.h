@@ -12,10 +12,12 @@
 
 namespace ifog {
 
-// Describes the longest record's residual, in which peaks are searched (not on a rate table). lines: taken out.
+// Describes the longest record's residual, in which peaks are searched (not on a rate table). of_samples: effects
+// that were taken out of the samples.
 Unexplained describe_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                          const std::vector<LineOf>& lines, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, const std::vector<NoiseChangeIn>& noise_changes);
+                          const std::vector<FoundEffect>& of_samples, const NoiseFit& noise,
+                          const BlockGrid& grid, double significance,
+                          const std::vector<NoiseChangeIn>& noise_changes);
 
 // Replaces the description by that of the hysteresis.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);

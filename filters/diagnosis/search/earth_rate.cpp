@@ -34,14 +34,15 @@ int order_of(const BlockData& data, const Candidate& candidate) {
   return std::min(power_of(candidate.form), 3);
 }
 
-bool is_earth_rate(const BlockData& data, const EarthRateOptions& options, const Candidate& candidate,
-                   double coefficient, double error) {
+bool is_earth_rate(const BlockData& data, const EarthRateOptions& options, const Chosen& chosen) {
+  const Candidate& candidate = chosen.candidate;
   const int order = order_of(data, candidate);
   if (order == 0) return false;
   const std::string& name = data.channels[candidate.channel].name;
   double most = order == 1 ? largest_earth_rate(name, options) : kEarth / gravity_in(name);
   for (int i = 1; i < order; ++i) most /= gravity_in(name);
-  return std::abs(coefficient) - kWithin * error <= most && may_be_tilt(data, candidate.channel);
+  return std::abs(chosen.coefficient) - kWithin * chosen.std_error <= most &&
+         may_be_tilt(data, candidate.channel);
 }
 
 }  // namespace
@@ -86,27 +87,19 @@ double largest_earth_rate(const std::string& channel, const EarthRateOptions& op
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
   const FirstReading reading =
       options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
-  Eigen::Index at = data.grid.constants();
-  for (Chosen& chosen : found.chosen) {
-    Candidate& mine = chosen.candidate;
-    const double coefficient = found.coefficients[at];
-    const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
-    ++at;
-    if (is_earth_rate(data, options, mine, coefficient, error)) mine.first_reading = reading;
-  }
+  for (Chosen& chosen : found.chosen)
+    if (is_earth_rate(data, options, chosen)) chosen.candidate.first_reading = reading;
 }
 
 std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& options,
                                 const SearchResult& found) {
   std::string words;
-  Eigen::Index at = data.grid.constants();
-  for (const Candidate& each : candidates_of(found.chosen)) {
-    const double coefficient = found.coefficients[at++];
-    if (!each.is_earth_rate() || order_of(data, each) != 1) continue;
-    const std::string& name = data.channels[each.channel].name;
+  for (const Chosen& each : found.chosen) {
+    if (!each.candidate.is_earth_rate() || order_of(data, each.candidate) != 1) continue;
+    const std::string& name = data.channels[each.candidate.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;
-    words += (words.empty() ? "" : " and ") + formatted("%.3g °/h per g of ", coefficient * scale) + name +
-             formatted(" (at most %.3g)", largest_earth_rate(name, options) * scale);
+    words += (words.empty() ? "" : " and ") + formatted("%.3g °/h per g of ", each.coefficient * scale) +
+             name + formatted(" (at most %.3g)", largest_earth_rate(name, options) * scale);
   }
   if (words.empty()) return "";
   return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +

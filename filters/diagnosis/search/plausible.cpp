@@ -80,9 +80,9 @@ double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
   return values.norm();
 }
 
-double size_of(const BlockData& data, const Candidate& effect, double coefficient) {
-  const double channel = swing_of(data.grid, column(data, ShapeSettings{}, effect.channel));
-  const double own = std::abs(coefficient) * swing_of(data.grid, regressor(data, effect));
+double size_of(const BlockData& data, const Chosen& effect) {
+  const double channel = swing_of(data.grid, column(data, ShapeSettings{}, effect.candidate.channel));
+  const double own = std::abs(effect.coefficient) * swing_of(data.grid, regressor(data, effect.candidate));
   return channel > 0.0 ? own / channel : 0.0;
 }
 
@@ -98,30 +98,24 @@ bool may_be_proxy(const BlockData& data, const Candidate& effect) {
 
 void doubt_proxies(const BlockData& data, SearchResult& found) {
   const Grade& grade = grade_of(data.grid, found.noise);
-  Eigen::Index at = data.grid.constants();
-  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
-    Candidate& mine = found.chosen[i].candidate;
-    const double coefficient = found.coefficients[at++];
-    if (!may_be_proxy(data, mine)) continue;
-    const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel]);
-    if (!bound || size_of(data, mine, coefficient) <= bound->most) continue;
-    mine.first_reading = FirstReading::kProxyShown;
+  for (Chosen& each : found.chosen) {
+    if (!may_be_proxy(data, each.candidate)) continue;
+    const std::optional<Bound> bound = bound_of(grade, data.channels[each.candidate.channel]);
+    if (bound && size_of(data, each) > bound->most) each.candidate.first_reading = FirstReading::kProxyShown;
   }
 }
 
 std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
   const Grade& grade = grade_of(data.grid, found.noise);
   std::string words;
-  Eigen::Index at = data.grid.constants();
-  for (const Candidate& each : candidates_of(found.chosen)) {
-    const double coefficient = found.coefficients[at++];
-    if (each.first_reading != FirstReading::kProxyShown) continue;
-    const FineChannel& channel = data.channels[each.channel];
+  for (const Chosen& each : found.chosen) {
+    if (each.candidate.first_reading != FirstReading::kProxyShown) continue;
+    const FineChannel& channel = data.channels[each.candidate.channel];
     const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});
     words += (words.empty() ? "" : "; ") + channel.name +
              formatted(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
-                       size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(),
-                       bound.of, bound.most / kDegreePerHour);
+                       size_of(data, each) / kDegreePerHour, unit_of(channel.name).c_str(), bound.of,
+                       bound.most / kDegreePerHour);
   }
   if (words.empty()) return words;
   return words +

@@ -16,15 +16,14 @@ namespace {
 // 0.5 % of a time constant; a finer value does not change the likelihood.
 constexpr int kBits = 11;
 constexpr double kEdge = 0.05;  // of the range: smallest distance of a transition's centre from its edges
-constexpr double kWidestTransition = 0.5;  // of the range
-constexpr double kNarrowest = 0.02;        // of the range
+constexpr double kNarrowest = 0.02;  // of the range
 
 // Brent's minimum of minus the log-likelihood as a function of a value in [low, high]; `with` makes the
 // columns.
 template <class With>
 double likeliest(const BlockGrid& grid, const NoiseShape& shape, double low, double high, const With& with) {
   std::uintmax_t most_evaluations = 30;
-  const auto lacking = [&](double value) { return -fit_whitened(grid, shape, with(value)).log_likelihood; };
+  const auto lacking = [&](double value) { return -fit_whitened(grid, shape, with(value)).log_likelihood(); };
   return boost::math::tools::brent_find_minima(lacking, low, high, kBits, most_evaluations).first;
 }
 
@@ -33,14 +32,13 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
   Columns columns = design(data, model);
   const Eigen::Index place = column_of(data.grid, at);
   const auto best = [&](double Candidate::*which, double low, double high) {
-    if (!(low < high)) return;
     const auto with = [&](double value) -> const Columns& {
       Candidate trial = model[at];
       trial.*which = value;
       columns.col(place) = regressor(data, trial);
       return columns;
     };
-    model[at].*which = likeliest(data.grid, shape, low, high, with);
+    model[at].*which = low < high ? likeliest(data.grid, shape, low, high, with) : high;
   };
   const FineChannel& channel = data.channels[model[at].channel];
   const double span = channel.high - channel.low;
@@ -48,11 +46,10 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
     const Candidate now = model[at];
     best(&Candidate::centre, std::max(channel.low + kEdge * span, now.centre - now.half_width),
          std::min(channel.high - kEdge * span, now.centre + now.half_width));
-    // Only widths with both levels visible (levels_seen()), even if a wider one is slightly more likely.
+    // Only widths with both levels visible, even if a wider one is slightly more likely.
     const double centre = model[at].centre;
     best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
-         std::min(
-             {kWidestTransition * span, now.half_width * 2.0, centre - channel.low, channel.high - centre}));
+         std::min({now.half_width * 2.0, centre - channel.low, channel.high - centre}));
   }
 }
 
@@ -105,14 +102,6 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
     return columns;
   };
   model[at].*which = std::exp(likeliest(data.grid, shape, std::log(low), std::log(high), with));
-}
-
-bool levels_seen(const BlockData& data, const std::vector<Candidate>& model) {
-  return std::ranges::all_of(model, [&](const Candidate& each) {
-    if (!each.is_transition()) return true;
-    const FineChannel& channel = data.channels[each.channel];
-    return each.centre - channel.low >= each.half_width && channel.high - each.centre >= each.half_width;
-  });
 }
 
 namespace {

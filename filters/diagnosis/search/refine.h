@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
@@ -15,24 +14,14 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
             double Candidate::*which = &Candidate::time_constant_s);
 
 // Optimises all searched parameters of model[at]: time constant, or centre and width of a transition, or
-// period of a fringe (both halves). A centre keeps its distance from the edges of the channel's range; a
-// width is at most half of it.
+// period of a fringe (both halves). A centre keeps its distance from the edges of the channel's range. Both levels
+// of a transition are visible: the range extends one half width to either side; otherwise a polynomial describes the
+// bend.
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at);
 
-// True if both levels of every transition are visible, i.e. the range extends one half width to either side
-// of its centre. Otherwise a polynomial describes the bend.
-bool levels_seen(const BlockData& data, const std::vector<Candidate>& model);
-
-// Tries a second time constant, a second thermal layer, or a direction instead of a product, once the effect
-// is chosen. Each must gain more than its cost.
-struct FittedModel {
-  std::vector<Candidate> effects;
-  NoiseFit noise;  // with them
-};
-
-// A coil in a housing follows the thermometer with two time constants; the effect of vibration power has two
-// as well.
+// Adds a second time constant to each effect whose gain exceeds its cost. A coil in a housing follows the
+// thermometer with two time constants; the effect of vibration power has two as well.
 void try_second_time_constants(const BlockData& data, FittedModel& model);
 
 }  // namespace ifog

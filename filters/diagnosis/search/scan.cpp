@@ -111,9 +111,8 @@ Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseSha
   return projected;
 }
 
-std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough,
-                                const Candidate* compared, const NoiseShape* at, bool pairs) const {
-  std::vector<Scored> scored(candidates_.size() + (pairs ? pairs_.size() : 0));
+std::vector<Scored> Scan::score(const FittedModel& base, bool thorough, const NoiseShape* further) const {
+  std::vector<Scored> scored(candidates_.size() + (thorough ? pairs_.size() : 0));
   for (std::size_t i = 0; i < candidates_.size(); ++i) scored[i].candidate = candidates_[i];
   for (std::size_t i = candidates_.size(); i < scored.size(); ++i) {
     const auto& [first, second] = pairs_[i - candidates_.size()];
@@ -121,10 +120,10 @@ std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseF
     scored[i].with = candidates_[static_cast<std::size_t>(second)];
   }
   const auto n = static_cast<double>(data_.grid.used());
-  std::vector<NoiseShape> shapes = spread(noise.shape, thorough);
-  if (at) shapes.insert(shapes.begin(), *at);
-  for (std::size_t s = 0; s < shapes.size(); ++s) {
-    const Projected p = project(base, shapes[s], columns_);
+  std::vector<NoiseShape> shapes = spread(base.noise.shape, thorough);
+  if (further) shapes.push_back(*further);
+  for (const NoiseShape& shape : shapes) {
+    const Projected p = project(base.effects, shape, columns_);
     const Eigen::VectorXd xy = p.columns.transpose() * p.y;
     const Eigen::VectorXd xx = p.columns.colwise().squaredNorm();
     for (std::size_t i = 0; i < scored.size(); ++i) {
@@ -132,33 +131,34 @@ std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseF
                                                  : gain_of(p.columns, xy, xx, pairs_[i - candidates_.size()]);
       if (!(gain > 0.0)) continue;
       const double left = std::max(p.square - gain, 1e-12 * p.square);
-      const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - noise.log_likelihood);
+      const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - base.noise.log_likelihood);
       if (ratio > scored[i].ratio) {
         scored[i].ratio = ratio;
-        scored[i].shape = shapes[s];
-      }
-    }
-    if (s == 0 && compared) {
-      const Projected mine = project(base, shapes[s], regressor(data_, *compared));
-      const Eigen::VectorXd dot = p.columns.transpose() * mine.columns.col(0);
-      for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const auto j = static_cast<Eigen::Index>(i);
-        scored[i].correlation =
-            dot[j] / std::sqrt(std::max(xx[j] * mine.columns.col(0).squaredNorm(), 1e-300));
+        scored[i].shape = shape;
       }
     }
   }
   return scored;
 }
 
-std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseFit& noise) const {
+Eigen::VectorXd Scan::correlations(const std::vector<Candidate>& base, const Candidate& effect,
+                                   const NoiseShape& shape) const {
+  Columns both(columns_.rows(), columns_.cols() + 1);
+  both << columns_, regressor(data_, effect);
+  const Columns projected = project(base, shape, both).columns;
+  const Eigen::VectorXd size = projected.colwise().norm().cwiseMax(1e-150);
+  const Eigen::VectorXd product = projected.transpose() * projected.rightCols(1);
+  return (product.array() / size.array() / size[columns_.cols()]).head(columns_.cols());
+}
+
+std::vector<Scored> Scan::steps(const FittedModel& base) const {
   const BlockGrid& grid = data_.grid;
   std::vector<Scored> found;
   const auto n = static_cast<double>(grid.used());
   for (const double share : {1.0, 0.05}) {
-    NoiseShape shape = noise.shape;
+    NoiseShape shape = base.noise.shape;
     shape.walk *= share;
-    const Projected p = project(base, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
+    const Projected p = project(base.effects, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
     for (std::size_t r = 0; r < grid.records.size(); ++r) {
       const Eigen::Index from = grid.records[r].row();
       const Eigen::Index length = grid.records[r].rows();
@@ -174,7 +174,7 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
         const double xx =
             energy[rest - 1] * std::max(0.05, shape.walk > 0.0 ? 1.0 : double(at) / double(length));
         const double left = std::max(p.square - xy * xy / xx, 1e-12 * p.square);
-        const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - noise.log_likelihood);
+        const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - base.noise.log_likelihood);
         if (ratio <= best.ratio) continue;
         best.ratio = ratio;
         best.shape = shape;

@@ -9,9 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "filters/diagnosis/regression/candidates.h"
-#include "filters/diagnosis/regression/noise_fit.h"
-#include "filters/diagnosis/regression/whitening.h"
+#include "filters/diagnosis/regression/design.h"
 
 namespace ifog {
 
@@ -20,7 +18,8 @@ struct Scored {
   std::optional<Candidate> with;  // second effect of a natural pair
   double ratio = 0.0;             // gain of twice the log-likelihood
   NoiseShape shape;               // noise model with this gain
-  double correlation = 0.0;       // with the effect `compared`, if any
+  double score = 0.0;             // ratio minus price; set by the search
+  double correlation = 0.0;       // with the effect that it could replace; set by the search
 };
 
 class Scan {
@@ -32,18 +31,20 @@ class Scan {
   // Adds candidates whose shape is not yet there.
   void add(const std::vector<Candidate>& more);
 
-  // thorough: all noise models, otherwise a few. pairs: the scores of pairs follow those of the candidates,
-  // in order.
-  [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
-                                          bool thorough, const Candidate* compared = nullptr,
-                                          const NoiseShape* at = nullptr, bool pairs = false) const;
+  // thorough: for more noise models, `further` too, and with the pairs, which follow the candidates in order.
+  [[nodiscard]] std::vector<Scored> score(const FittedModel& base, bool thorough,
+                                          const NoiseShape* further = nullptr) const;
+
+  // Of each candidate with `effect`, whitened, and with `base` projected out.
+  [[nodiscard]] Eigen::VectorXd correlations(const std::vector<Candidate>& base, const Candidate& effect,
+                                             const NoiseShape& shape) const;
 
   // Adds natural pairs whose effects are both in the library.
   void pair(const std::vector<NaturalPair>& pairs);
   [[nodiscard]] std::size_t pairs() const { return pairs_.size(); }
 
   // Most likely position of a step, at most one per record.
-  [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
+  [[nodiscard]] std::vector<Scored> steps(const FittedModel& base) const;
 
  private:
   void fill(std::size_t candidate);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "filters/diagnosis/checks/cross_validation.h"
@@ -21,6 +22,7 @@ constexpr double kLikeness = 6.0;         // loss below which an alternative is 
 constexpr double kTrialFactor = 1.3;      // the noise needs no higher precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // share of the significance; the rest is for steps
 constexpr double kAlike = 0.98;           // sufficient correlation of the whitened regressors
+constexpr double kImpossible = -1e300;    // score
 
 // Half a fringe is no law: with a free period it replaces the other half.
 bool swings(std::span<const Candidate> model, const Candidate& half) {
@@ -48,14 +50,11 @@ class EffectSearch {
 
   SearchResult run() {
     SearchResult result;
-    noise_ = first_noise(model_);
+    model_.noise = first_noise(model_.effects);
     count_tries();
     start_with_basics();
     improve();
-    FittedModel unfolded{model_, noise_};
-    try_second_time_constants(data_, unfolded);
-    model_ = std::move(unfolded.effects);
-    noise_ = std::move(unfolded.noise);
+    try_second_time_constants(data_, model_);
     finish(result);
     return result;
   }
@@ -68,16 +67,13 @@ class EffectSearch {
     tries_of_steps_ = static_cast<double>(data_.grid.used()) / (1.0 - kShareOfChannels);
   }
 
-  [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
-    const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
-    return std::min(1.0, kProfiled * chi_squared_above(ratio, 1.0) * tries);
+  [[nodiscard]] double tries_of(const Candidate& candidate) const {
+    return candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
   }
 
   // Likelihood ratio that chance reaches in `significance` of all searches.
   [[nodiscard]] double threshold(const Candidate& candidate) const {
-    double ratio = 1.0;
-    while (p_value(candidate, ratio) > options_.significance) ratio += 0.25;
-    return ratio;
+    return chi_squared_exceeded(options_.significance / (kProfiled * tries_of(candidate)), 1.0);
   }
 
   // True if `candidate` forms one law with an effect in `others`. Then it needs no separate proof, only the
@@ -91,48 +87,60 @@ class EffectSearch {
            });
   }
 
-  [[nodiscard]] double score(const std::vector<Candidate>& model, const NoiseFit& noise) const {
+  [[nodiscard]] double score(const FittedModel& model) const {
+    const std::vector<Candidate>& effects = model.effects;
     const auto n = static_cast<double>(data_.grid.used());
-    double sum = 2.0 * noise.log_likelihood;
-    for (std::size_t i = 0; i < model.size(); ++i) {
-      if (is_fringe(data_, model[i]) && !swings(model, model[i])) return -1e300;
-      if (is_power_beyond(data_, model[i]) && !has_line(model, model[i].channel)) return -1e300;
-      const bool law = completes_a_law(model[i], std::span(model).first(i));
-      sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
+    double sum = 2.0 * model.noise.log_likelihood;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+      if (is_fringe(data_, effects[i]) && !swings(effects, effects[i])) return kImpossible;
+      if (is_power_beyond(data_, effects[i]) && !has_line(effects, effects[i].channel)) return kImpossible;
+      const bool law = completes_a_law(effects[i], std::span(effects).first(i));
+      sum -= complexity(effects[i]) + (law ? std::log(n) : threshold(effects[i]));
     }
     // Correction for few points: Hurvich and Tsai, Biometrika 76, 1989.
-    const auto k = static_cast<double>(model.size()) + 2.0;
+    const auto k = static_cast<double>(effects.size()) + 2.0;
     return sum - 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
   }
 
+  // start: of the search for the noise.
+  [[nodiscard]] FittedModel fitted(std::vector<Candidate> effects, const NoiseShape& start) const {
+    const NoiseFit noise = fit_noise(data_.grid, design(data_, effects), start);
+    return {std::move(effects), noise};
+  }
+
   struct Trial {
-    std::vector<Candidate> model;
-    NoiseFit noise;
-    double score = -1e300;
+    FittedModel model;
+    double score = kImpossible;
   };
 
   [[nodiscard]] Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
-    Trial trial;
     refine_shape(data_, start, model, at);
-    trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
-    refine_shape(data_, trial.noise.shape, model, at);
-    trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
-    if (levels_seen(data_, model)) trial.score = score(model, trial.noise);
-    trial.model = std::move(model);
+    NoiseFit noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
+    refine_shape(data_, noise.shape, model, at);
+    noise = fit_noise(data_.grid, design(data_, model), noise.shape);
+    Trial trial{{std::move(model), noise}};
+    trial.score = score(trial.model);
     return trial;
   }
 
-  [[nodiscard]] bool proven(const Trial& trial) const {
-    if (!levels_seen(data_, trial.model)) return false;
-    const Claimed claimed{trial.model, trial.noise};
-    return trial.model.back().form == Form::kStep ? step_persists(data_, claimed)
-                                                  : predicts_held_out(data_, claimed);
+  [[nodiscard]] bool proven(const FittedModel& model) const {
+    return model.effects.back().form == Form::kStep ? step_persists(data_, model)
+                                                    : predicts_held_out(data_, model);
+  }
+
+  // Index of an effect that held-out blocks refute.
+  [[nodiscard]] std::optional<std::size_t> refuted(const FittedModel& model) const {
+    for (std::size_t i = 0; i < model.effects.size(); ++i) {
+      FittedModel on_trial{without(model.effects, i), model.noise};
+      on_trial.effects.push_back(model.effects[i]);
+      if (!proven(on_trial)) return i;
+    }
+    return std::nullopt;
   }
 
   bool take(Trial trial) {
-    if (trial.score < score(model_, noise_) + kRise) return false;
+    if (trial.score < score(model_) + kRise) return false;
     model_ = std::move(trial.model);
-    noise_ = trial.noise;
     return true;
   }
 
@@ -143,31 +151,36 @@ class EffectSearch {
 
   // First fits what every gyro has, before the noise model absorbs it: scale factor, misalignment,
   // temperature to second order. The kinds of noise are chosen beside all of them, then unprofitable ones are
-  // removed one by one. Each noise fit starts from the noise beside all and from zero; the likelier is used.
+  // removed one by one, and those that held-out blocks refute. Each noise fit starts from the noise beside all and
+  // from zero; the likelier is used.
   void start_with_basics() {
     if (data_.reference < 0) return;
-    Trial basics{model_, {}, 0.0};
+    std::vector<Candidate> effects;
     for (const Candidate& each : library(data_))
-      if (is_basic(each)) basics.model.push_back(each);
-    if (basics.model.empty()) return;
-    basics.noise = first_noise(basics.model);
-    basics.score = score(basics.model, basics.noise);
-    while (!basics.model.empty()) {
+      if (is_basic(each)) effects.push_back(each);
+    if (effects.empty()) return;
+    const NoiseFit noise = first_noise(effects);
+    Trial basics{{std::move(effects), noise}};
+    basics.score = score(basics.model);
+    while (!basics.model.effects.empty()) {
       Trial best;
-      for (std::size_t i = 0; i < basics.model.size(); ++i) {
-        Trial less{without(basics.model, i), {}, 0.0};
-        const Columns columns = design(data_, less.model);
-        less.noise = fit_noise(data_.grid, columns, basics.noise.shape);
-        const NoiseFit other = fit_noise(data_.grid, columns, {});
-        if (other.log_likelihood > less.noise.log_likelihood) less.noise = other;
-        less.score = score(less.model, less.noise);
-        if (less.score > best.score) best = std::move(less);
+      for (std::size_t i = 0; i < basics.model.effects.size(); ++i) {
+        const std::vector<Candidate> less = without(basics.model.effects, i);
+        for (const NoiseShape& start : {basics.model.noise.shape, NoiseShape{}}) {
+          FittedModel model = fitted(less, start);
+          const double mine = score(model);
+          if (mine > best.score) best = {std::move(model), mine};
+        }
       }
       if (best.score < basics.score) break;
       basics = std::move(best);
     }
-    if (!basics.model.empty() && take(std::move(basics)))
-      for (const Candidate& each : model_) offer_products(each.channel);
+    while (const auto at = refuted(basics.model)) {
+      basics.model = fitted(without(basics.model.effects, *at), basics.model.noise.shape);
+      basics.score = score(basics.model);
+    }
+    if (!basics.model.effects.empty() && take(std::move(basics)))
+      for (const Candidate& each : model_.effects) offer_products(each.channel);
   }
 
   [[nodiscard]] bool is_basic(const Candidate& each) const {
@@ -180,55 +193,55 @@ class EffectSearch {
   }
 
   void improve() {
-    while (model_.size() < options_.most_effects) {
-      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
+    while (model_.effects.size() < options_.most_effects) {
+      if (options_.progress) options_.progress(model_.effects.size(), options_.most_effects + 1);
       if (!add_one()) break;
       revise();
     }
   }
 
   // Best addition to `base` from the shortlist, fully fitted.
-  [[nodiscard]] Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise,
-                                    bool thorough) const {
-    std::vector<Scored> scored = scan_.score(base, noise, thorough, nullptr, nullptr, thorough);
+  [[nodiscard]] Trial best_addition(const FittedModel& base, bool thorough) const {
+    const std::vector<Candidate>& effects = base.effects;
+    std::vector<Scored> scored = scan_.score(base, thorough);
     if (thorough && !data_.grid.dwells)
-      for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
+      for (const Scored& step : scan_.steps(base)) scored.push_back(step);
     const double law = std::log(static_cast<double>(data_.grid.used()));
     const auto price = [&](const Scored& each) {
-      const bool completes = completes_a_law(each.candidate, base);
+      const bool completes = completes_a_law(each.candidate, effects);
       return complexity(each.candidate) + (completes ? law : threshold(each.candidate)) +
              (each.with ? complexity(*each.with) + law : 0.0);
     };
-    std::ranges::sort(
-        scored, [&](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
+    for (Scored& each : scored) each.score = each.ratio - price(each);
+    std::ranges::sort(scored, std::greater{}, &Scored::score);
     Trial best;
     std::vector<Candidate> tried;
     std::size_t pairs = 0;
     for (const Scored& each : scored) {
       const Candidate& last = each.with ? *each.with : each.candidate;
       if (tried.size() >= kShortlist || each.ratio < kLikeness) break;
-      if (has_shape(base, each.candidate) || has_shape(base, last) || (!each.with && has_shape(tried, last)))
+      if (has_shape(effects, each.candidate) || has_shape(effects, last) ||
+          (!each.with && has_shape(tried, last)))
         continue;
       if (each.with && pairs++ >= kPairsTried) continue;
       if (!each.with) tried.push_back(last);
-      std::vector<Candidate> model = base;
+      std::vector<Candidate> model = effects;
       model.push_back(each.candidate);
       if (each.with) model.push_back(last);
       Trial trial = refined(model, model.size() - 1, each.shape);
       // A shock that does not last is no effect, and does not exclude one that it hides.
-      if (last.form == Form::kStep && !proven(trial)) continue;
+      if (last.form == Form::kStep && !proven(trial.model)) continue;
       if (trial.score > best.score) best = std::move(trial);
     }
     return best;
   }
 
   bool add_one() {
-    Trial best = best_addition(model_, noise_, true);
-    if (best.model.empty() || !proven(best)) return false;
-    const std::vector<Candidate> added(best.model.begin() + static_cast<std::ptrdiff_t>(model_.size()),
-                                       best.model.end());
+    Trial best = best_addition(model_, true);
+    if (best.model.effects.empty() || !proven(best.model)) return false;
+    const std::size_t before = model_.effects.size();
     if (!take(std::move(best))) return false;
-    for (const Candidate& each : added) offer_products(each.channel);
+    for (std::size_t i = before; i < model_.effects.size(); ++i) offer_products(model_.effects[i].channel);
     return true;
   }
 
@@ -242,44 +255,48 @@ class EffectSearch {
 
   // Tries to remove, replace and reshape each effect, since early ones were chosen without the later ones.
   void revise() {
-    for (std::size_t i = 0; i < model_.size() && model_.size() > 1;) {
-      std::vector<Candidate> rest = without(model_, i);
-      if (is_fringe(data_, model_[i]))
-        std::erase_if(rest, [&](const Candidate& each) { return each.swings_with(model_[i]); });
-      const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      if (take({rest, noise, score(rest, noise)})) continue;
-      Trial other = best_addition(rest, noise, false);
-      if (!other.model.empty()) take(std::move(other));
+    for (std::size_t i = 0; i < model_.effects.size() && model_.effects.size() > 1;) {
+      std::vector<Candidate> others = without(model_.effects, i);
+      if (is_fringe(data_, model_.effects[i]))
+        std::erase_if(others, [&](const Candidate& each) { return each.swings_with(model_.effects[i]); });
+      const FittedModel rest = fitted(std::move(others), model_.noise.shape);
+      if (take({rest, score(rest)})) continue;
+      take(best_addition(rest, false));
       ++i;
     }
-    for (std::size_t i = 0; i < model_.size(); ++i)
-      if (model_[i].searched() || is_fringe(data_, model_[i])) take(refined(model_, i, noise_.shape));
+    for (std::size_t i = 0; i < model_.effects.size(); ++i)
+      if (model_.effects[i].searched() || is_fringe(data_, model_.effects[i]))
+        take(refined(model_.effects, i, model_.noise.shape));
   }
 
   void finish(SearchResult& result) {
-    for (std::size_t i = 0; i < model_.size(); ++i) {
-      const std::vector<Candidate> rest = without(model_, i);
-      const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - noise.log_likelihood), 1.0};
-      chosen.of_a_law = completes_a_law(model_[i], rest);
-      // The other term of the law is proven, so only this term was tried.
-      chosen.p_value = chosen.of_a_law
-                           ? std::min(1.0, kProfiled * chi_squared_above(chosen.likelihood_ratio, 1.0))
-                           : p_value(model_[i], chosen.likelihood_ratio);
+    for (std::size_t i = 0; i < model_.effects.size(); ++i) {
+      const FittedModel rest = fitted(without(model_.effects, i), model_.noise.shape);
+      Chosen chosen;
+      chosen.candidate = model_.effects[i];
+      chosen.likelihood_ratio = 2.0 * (model_.noise.log_likelihood - rest.noise.log_likelihood);
+      chosen.of_a_law = completes_a_law(chosen.candidate, rest.effects);
+      // If the other term of the law is proven, only this term was tried.
+      const double tries = chosen.of_a_law ? 1.0 : tries_of(chosen.candidate);
+      chosen.p_value = std::min(1.0, kProfiled * chi_squared_above(chosen.likelihood_ratio, 1.0) * tries);
       result.chosen.push_back(chosen);
-      find_alternatives(result, i, rest, noise);
+      find_alternatives(result, i, rest);
     }
-    result.noise = noise_;
+    result.noise = model_.noise;
     result.tries = tries_of_channels_;
-    result.coefficients = solve(data_.grid, noise_.shape, design(data_, model_), &result.covariance);
+    fit_coefficients(data_, result);
   }
 
-  void find_alternatives(SearchResult& result, std::size_t i, const std::vector<Candidate>& rest,
-                         const NoiseFit& noise) const {
+  void find_alternatives(SearchResult& result, std::size_t i, const FittedModel& rest) const {
     const double mine = result.chosen[i].likelihood_ratio;
-    std::vector<Candidate> seen = {model_[i]};
-    std::vector<Scored> scored = scan_.score(rest, noise, true, &model_[i], &noise_.shape);
-    std::ranges::sort(scored, [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
+    std::vector<Candidate> seen = {model_.effects[i]};
+    std::vector<Scored> scored = scan_.score(rest, true, &model_.noise.shape);
+    std::erase_if(scored, [](const Scored& each) { return each.with.has_value(); });
+    const Eigen::VectorXd correlations =
+        scan_.correlations(rest.effects, model_.effects[i], model_.noise.shape);
+    for (std::size_t k = 0; k < scored.size(); ++k)
+      scored[k].correlation = correlations[static_cast<Eigen::Index>(k)];
+    std::ranges::sort(scored, std::greater{}, &Scored::ratio);
     for (const Scored& each : scored) {
       const double loss = mine - each.ratio;
       if (loss > kLikeness && std::abs(each.correlation) < kAlike) continue;
@@ -295,8 +312,7 @@ class EffectSearch {
   const SearchOptions& options_;
   Scan scan_;
   std::vector<NaturalPair> laws_;
-  std::vector<Candidate> model_;
-  NoiseFit noise_;
+  FittedModel model_;
   // Numbers of independent tries / their share of the significance
   double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;
 };
@@ -308,6 +324,24 @@ std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen) {
   candidates.reserve(chosen.size());
   for (const Chosen& each : chosen) candidates.push_back(each.candidate);
   return candidates;
+}
+
+Eigen::VectorXd coefficients_of(const std::vector<Chosen>& chosen) {
+  Eigen::VectorXd coefficients(static_cast<Eigen::Index>(chosen.size()));
+  std::ranges::transform(chosen, coefficients.begin(), &Chosen::coefficient);
+  return coefficients;
+}
+
+void fit_coefficients(const BlockData& data, SearchResult& found) {
+  const WhitenedFit fit =
+      fit_whitened(data.grid, found.noise.shape, design(data, candidates_of(found.chosen)));
+  const Eigen::VectorXd coefficients = fit.coefficients();
+  const Eigen::VectorXd variances = fit.covariance().diagonal();
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    const Eigen::Index at = column_of(data.grid, i) - 1;
+    found.chosen[i].coefficient = coefficients[at];
+    found.chosen[i].std_error = std::sqrt(variances[at]);
+  }
 }
 
 SearchResult search_effects(const BlockData& data, const SearchOptions& options) {

@@ -7,14 +7,13 @@
 #include <functional>
 #include <optional>
 
-#include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
 struct Chosen {
   Candidate candidate;
+  double coefficient = 0.0, std_error = 0.0;
   double likelihood_ratio = 0.0;  // loss of twice the log-likelihood without it, with the noise fitted again
   double p_value = 1.0;           // corrected for the number of tries
   bool of_a_law = false;          // one of two coefficients of one law; see natural_pairs()
@@ -31,12 +30,14 @@ struct SearchResult {
   std::vector<Chosen> chosen;
   std::vector<Alternative> alternatives;
   NoiseFit noise;
-  Eigen::VectorXd coefficients;  // nuisances (one constant per record), then one per chosen effect
-  Eigen::MatrixXd covariance;    // of the coefficients
   double tries = 1.0;  // number of independent tries of channel effects / their share of the significance
 };
 
 std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen);
+Eigen::VectorXd coefficients_of(const std::vector<Chosen>& chosen);
+
+// Fits the coefficients of the chosen effects under the noise found.
+void fit_coefficients(const BlockData& data, SearchResult& found);
 
 struct SearchOptions {
   double significance = 0.01;

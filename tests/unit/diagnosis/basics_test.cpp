@@ -16,6 +16,7 @@
 #include "filters/effects/meaning.h"
 #include "filters/model_file/toml_text.h"
 #include "tests/unit/diagnosis/findings.h"
+#include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {
@@ -26,13 +27,9 @@ struct Rows {
   std::string name = "temperature_degC";
 
   [[nodiscard]] Record record() const {
-    Record made;
-    made.name = "rows";
-    made.time_s = time;
-    made.rate_radps = rate;
-    if (!reference.empty()) made.reference_radps = reference;
-    if (!channel.empty()) made.channels = {{name, channel}};
-    return made;
+    std::vector<RecordChannel> channels;
+    if (!channel.empty()) channels.push_back({name, channel});
+    return made_record("rows", time, rate, channels, reference);
   }
 };
 
@@ -113,6 +110,32 @@ TEST(Basics, AMeanFarFromTheReferenceTemperatureIsCorrected) {
   const Diagnosis found = diagnose({rows.record()}, {});
   EXPECT_NE(effect_of(found, "linear", "temperature_degC"), nullptr);
   EXPECT_LT(std::abs(found.after.at("bias_radps")), 2e-7) << "of 6e-5";
+}
+
+// A table that stands at a rate level for 42 s each. At one of them, slower than the Earth, the sensor measures nothing.
+// That one event dominates the innovations, and a scale factor that fits it is refuted by the rest of the record.
+TEST(Basics, OneEventIsNoScaleFactor) {
+  constexpr std::uint32_t kSlow = 14;
+  for (const std::uint32_t seed : {1U, 2U, 3U, 9U, 10U}) {
+    const auto level = [&](std::uint32_t k) {
+      return k == kSlow ? -9.2e-5 : 0.06 * gaussian_deviate(k, 1, seed, 9);
+    };
+    Rows rows;
+    double walk = 0.0;
+    for (std::uint32_t i = 0; i < 36000; ++i) {
+      const double t = 0.05 * i;
+      const auto k = static_cast<std::uint32_t>(t / 42.0);
+      const double u = std::min(1.0, (t - 42.0 * k) / 0.3), before = level(k > 0 ? k - 1 : 0);
+      rows.time.push_back(t);
+      rows.reference.push_back(before + (level(k) - before) * u * u * (3.0 - 2.0 * u));
+      const bool measured = k != kSlow || std::abs(rows.reference.back()) > 9.3e-5;
+      walk += 8e-10 * gaussian_deviate(i, 2, seed, 9);
+      rows.rate.push_back((measured ? rows.reference.back() : 0.0) + walk +
+                          2e-6 * gaussian_deviate(i, 3, seed, 9));
+    }
+    const Diagnosis found = diagnose({rows.record()}, {});
+    EXPECT_EQ(effect_of(found, "linear"), nullptr) << all_in_words(found) << "seed " << seed;
+  }
 }
 
 // Thirteen points of a calibration.

@@ -109,13 +109,9 @@ TEST(ConsistentReport, WhatWasKeptBackMayDenyAndThenTheReportSaysSo) {
     channel.push_back(25.0 + 5.0 * std::sin(2.0 * M_PI * t / 150.0) + 2.0 * std::sin(2.0 * M_PI * t / 37.0));
     rate.push_back((i < 10000 ? 1e-6 : -1e-6) * (channel.back() - 25.0) + 1e-6 * deviate(i, 3));
   }
-  Record record;
-  record.time_s = time;
-  record.rate_radps = rate;
-  record.channels = {{"temperature_degC", channel}};
   DiagnoseOptions options;
   options.fit_to = 0.5;
-  const Diagnosis found = diagnose({record}, options);
+  const Diagnosis found = diagnose({made_record("", time, rate, {{"temperature_degC", channel}})}, options);
   ASSERT_FALSE(found.effects.empty());
   ASSERT_GT(found.after.at("rms_1s_radps"), 1.5 * found.before.at("rms_1s_radps"));
   const auto told = [](const std::string& remark) {
@@ -196,12 +192,12 @@ Fitted fitted(const Trial& trial) {
   lagged.time_constant_s = 1.1 * kLag;
   const Columns columns = design(data, {lagged});
   found.noise = fit_noise(data.grid, columns);
-  found.coefficients = solve(data.grid, found.noise.shape, columns, &found.covariance);
+  fit_coefficients(data, found);
   Fitted fit;
   fit.joint = settle(data, found);
-  Findings findings = findings_of(data, data, found, fit.joint, "");
+  Findings findings = findings_of(data, found, fit.joint, "");
   fit.diagnosis.effects = findings.effects;
-  fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, 1, 1);
+  fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, data.grid, 1);
   fit.diagnosis.ranges = ranges_of(data, findings.effects);
   fit.diagnosis.noise_posterior = fit.joint.noise;
   return fit;

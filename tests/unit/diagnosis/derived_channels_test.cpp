@@ -40,12 +40,10 @@ Columns columns(std::size_t n) {
 }
 
 Record record_of(const Columns& c, const std::vector<double>& wrapped) {
-  Record record;
-  record.time_s = c.time;
-  record.rate_radps = c.rate;
-  record.reference_radps = c.reference;
-  record.channels = {
-      {"inner_degC", c.one}, {"outer_degC", c.other}, {"supply_V", c.one}, {"table_rad", wrapped}};
+  Record record = made_record(
+      "", c.time, c.rate,
+      {{"inner_degC", c.one}, {"outer_degC", c.other}, {"supply_V", c.one}, {"table_rad", wrapped}},
+      c.reference);
   record.other_axes = {{"rate_y_radps", c.turned}};
   return record;
 }
@@ -150,11 +148,7 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
       measured[a].push_back(rate);
     }
   }
-  Record record;
-  record.name = "table";
-  record.time_s = time;
-  record.rate_radps = measured[0];
-  record.reference_radps = truth[0];
+  Record record = made_record("table", time, measured[0], {}, truth[0]);
   record.other_axes = {{"rate_y_radps", measured[1]}, {"rate_z_radps", measured[2]}};
   record.other_references = {truth[1], truth[2]};
   const OwnedRecords along = with_other_axes(std::vector{record});
@@ -190,11 +184,7 @@ TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
     x_late.push_back(x(t - 0.1));
     y_late.push_back(y(t - 0.1));
   }
-  Record record;
-  record.name = "cone";
-  record.time_s = time;
-  record.rate_radps = x_rate;
-  record.reference_radps = x_late;
+  Record record = made_record("cone", time, x_rate, {}, x_late);
   record.other_axes = {{"rate_y_radps", y_rate}};
   record.other_references = {y_late};
   const Diagnosis found = diagnose({record}, {});

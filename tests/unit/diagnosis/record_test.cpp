@@ -269,12 +269,8 @@ TEST(ChannelFaults, AHoleInTheRowsIsBridged) {
     rate.push_back(0.0);
     channel.push_back(0.01 * static_cast<double>(i));
   }
-  Record record;
-  record.name = "with a hole";
-  record.time_s = time;
-  record.rate_radps = rate;
-  record.channels = {{"temperature_degC", channel}};
-  const BlockData data = cut_to_blocks({record});
+  const BlockData data =
+      cut_to_blocks({made_record("with a hole", time, rate, {{"temperature_degC", channel}})});
   ASSERT_EQ(data.grid.fine, 1U);
   for (std::size_t k = 0; k < 4000; ++k)
     EXPECT_NEAR(data.channels[0].values[k], 0.01 * static_cast<double>(k), 1e-9) << k;

@@ -52,8 +52,14 @@ TEST(Lines, AToneIsFoundToItsBounds) {
   own.start_s = left.start_s = start;
   own.before = own.rest = own.after = left.rest = left.after = std::make_shared<const Samples>(error);
   left.before = std::make_shared<const Samples>(error.size(), 0.0);
-  EXPECT_EQ(coherent_lines({own}, kPeriod, 0.01).size(), 1U);
-  EXPECT_TRUE(coherent_lines({left}, kPeriod, 0.01).empty());
+  const auto lines_in = [](const EvenError& record) {
+    BlockGrid grid = grid_of({200});
+    grid.sample_s = kPeriod;
+    std::vector<EvenError> errors{record};
+    return take_out_lines(0.01, grid, errors).size();
+  };
+  EXPECT_EQ(lines_in(own), 1U);
+  EXPECT_EQ(lines_in(left), 0U);
   // Missing values make it uncertain, not small.
   const std::vector<double> coins = white(error.size(), 2);
   for (std::size_t i = 0; i < error.size(); ++i)

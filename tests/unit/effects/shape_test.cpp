@@ -50,23 +50,6 @@ TEST(Shape, ADeadZoneIsTheChannelWithinItsHalfWidth) {
   EXPECT_THROW(Shape{settings}, std::invalid_argument);
 }
 
-// By the rule of the midpoint over the spread.
-TEST(Shape, TheMeanInADeadZoneIsThatOfWhatPassesThrough) {
-  for (const double mean : {-1.4, -0.6, -0.2, 0.0, 0.1, 0.45, 0.9, 3.0}) {
-    for (const double reach : {1e-3, 0.2, 0.7, 2.0}) {
-      constexpr int kPoints = 200000;
-      double sum = 0.0;
-      for (int i = 0; i < kPoints; ++i) {
-        const double x = mean + reach * (2.0 * (i + 0.5) / kPoints - 1.0);
-        sum += std::abs(x) < 0.5 ? x : 0.0;
-      }
-      EXPECT_NEAR(mean_in_dead_zone(mean, reach * reach / 3.0, 0.5), sum / kPoints, 2e-5)
-          << mean << " " << reach;
-    }
-  }
-  EXPECT_DOUBLE_EQ(mean_in_dead_zone(0.3, 0.0, 0.5), 0.3);
-}
-
 // The response of a first-order lag to a step is 1 - exp(-t/tau), exactly at the sample times.
 TEST(Shape, LagAnswersAStepExponentially) {
   Shape lag(of(Form::kLagged, 40.0));

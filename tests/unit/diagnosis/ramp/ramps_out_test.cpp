@@ -51,7 +51,7 @@ TEST(RampsOut, TheRateIsLessWhatTheRampMadeOfIt) {
                                   capture(2, 20000, 5e-5, kNonlinearity)};
   const WithoutRamps without = take_out_ramps({record_of(made[0], "a"), record_of(made[1], "b")}, 0.01);
   ASSERT_EQ(without.ramps.size(), 1U);
-  EXPECT_EQ(without.ramps[0].found.effect.channel, "ramp_counts");
+  EXPECT_EQ(without.ramps[0].effect.channel, "ramp_counts");
   ASSERT_EQ(without.records.size(), 2U);
   for (std::size_t r = 0; r < made.size(); ++r) {
     const Record& record = without.records[r];
