@@ -148,16 +148,20 @@ Effect effect_of(const UnbrokenPart& part, const RampComb& comb, const RampSetti
   return effect;
 }
 
-// True if the correction reduces the errors.
-bool helps(const std::vector<Record>& records, const RampFit& fit) {
-  double before = 0.0, after = 0.0;
+// True if the daemon's correction achieves half of what the table explains. Lines of a structure or machine do not
+// keep the angle's phase for so long.
+bool keeps_its_promise(const std::vector<Record>& records, const RampFit& fit, const PhaseTable& table) {
+  constexpr double kAchieved = 0.5;
+  double gained = 0.0, samples = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     Samples error = error_of(records[r]);
-    before += variance_of(error) * static_cast<double>(error.size());
+    const auto n = static_cast<double>(error.size());
+    const double before = variance_of(error);
     for (std::size_t i = 0; i < error.size(); ++i) error[i] -= fit.correction[r][i];
-    after += variance_of(error) * static_cast<double>(error.size());
+    gained += n * (before - variance_of(error));
+    samples += n;
   }
-  return after < before;
+  return gained / samples > kAchieved * table.explained / table.samples;
 }
 
 double chance_of(const RampComb& comb) {
@@ -166,7 +170,7 @@ double chance_of(const RampComb& comb) {
                   comb.tries * chi_squared_above(table.ratio(), static_cast<double>(table.angle_rad.size())));
 }
 
-// With table and correction; nullopt if the correction does not help.
+// With table and correction; nullopt if the correction does not achieve what the table explains.
 std::optional<RampFit> fit_of(const std::vector<Record>& records, const UnbrokenPart& part,
                               const RampComb& comb) {
   const PhaseTable& table = comb.table;
@@ -178,7 +182,7 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, const Unbroken
   RampFit fit;
   fit.found = {effect_of(part, comb, settings), chance_of(comb), 0.0, table.ratio()};
   for (const Record& record : records) fit.correction.push_back(tracked(record, settings));
-  return helps(records, fit) ? std::optional(std::move(fit)) : std::nullopt;
+  return keeps_its_promise(records, fit, table) ? std::optional(std::move(fit)) : std::nullopt;
 }
 
 }  // namespace
