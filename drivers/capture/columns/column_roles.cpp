@@ -161,11 +161,14 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
     const auto listed = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
     if (!name.empty() && std::ranges::none_of(columns, listed)) columns.push_back({name, header, unit});
   };
-  for (const auto& choice : choices_of(sensors_of(table, true)))
+  for (auto& choice : choices_of(sensors_of(table, true))) {
+    // A table that turns a sensor of one axis.
+    if (choice.size() == 1 && rates.size() == 1) choice[0].axis = rates[0].axis;
     for (const RateCandidate& column : choice)
       if (!column.unit.empty() &&
           std::ranges::any_of(rates, [&](const RateCandidate& r) { return r.axis == column.axis; }))
         add(capture_name(column), column.place, column.unit);
+  }
   for (std::size_t i = 0; i < table.names.size(); ++i)
     add(channel_name(Words(table.names[i]), table.unit_of(i)), i, table.unit_of(i));
 }

@@ -57,14 +57,16 @@ std::vector<double> numbers_in(const std::vector<std::string>& cells) {
   return values;
 }
 
-// True if values increase, except for one or two rollovers, at least once in `each` steps.
-bool goes_on(const std::vector<double>& values, std::size_t each) {
+// True if values increase at least once in `each` steps, and hardly ever decrease. A named time may decrease more often, as where
+// a log is not in order: its rows are checked one by one.
+bool goes_on(const std::vector<double>& values, std::size_t each, bool named) {
   std::size_t back = 0, on = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] < values[i - 1]) ++back;
     if (values[i] > values[i - 1]) ++on;
   }
-  return values.size() < 2 || (on > 0 && each * on >= values.size() - 1 && back <= 1);
+  return values.size() < 2 ||
+         (on > 0 && each * on >= values.size() - 1 && (back <= 1 || (named && 2 * back < on)));
 }
 
 bool counts(const std::vector<double>& values) {
@@ -191,8 +193,8 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   CsvTime out{table.header_of(place), dated ? "s" : time_unit_by_name(table, place, words)};
   // Several rows may have one stamp; without a name a quantity that hardly changes is no time.
   const std::size_t each = table.named ? cells.size() : kFewRows;
-  if (!dated &&
-      (values.size() != cells.size() || !goes_on(values, each) || (out.unit.empty() && counts(values))))
+  if (!dated && (values.size() != cells.size() || !goes_on(values, each, table.named) ||
+                 (out.unit.empty() && counts(values))))
     return std::nullopt;
   if (out.unit.empty()) out.unit = unit_by_values(values);
   return out;

@@ -33,7 +33,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
      "error residual limit threshold gain timestamp tmp sts period relative sample sampling update frame "
      "odr integral accel acc acceleration accelerometer mag magnetometer denoised compensated innovation "
      "command cmd setpoint desired target drift "},
-    {Role::truth, " reference ref truth true groundtruth gt "},
+    {Role::truth, " reference ref truth true groundtruth gt table turntable ratetable encoder "},
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang "},
     {Role::time,

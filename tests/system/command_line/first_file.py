@@ -193,7 +193,7 @@ class Checks:
 
     def check_which_column_is_the_time(self):
         """A phone's sensors side by side, each with its own clock; a time in whole seconds beside its milliseconds; a temperature T;
-        a slow pressure in the first column of a log without names; a count of the rows; a time as digits of a clock."""
+        a slow pressure in the first column of a log without names; a count of the rows; a time as digits of a clock; a time out of order."""
         self.reads("phone.csv", ["Time (s),X (m/s^2),Time (s),X (rad/s),Y (rad/s),Z (rad/s)", *self.rows(
             lambda i, x, y, z: (i / RATE_HZ, 9.8, 0.0225 + i * 1.01 / RATE_HZ, x * RAD, y * RAD, z * RAD))], unasked=True, says=("#3",), hz=RATE_HZ / 1.01)
         self.reads("coarse.csv", ["Timestamp,Milliseconds,wx (deg/s)", *self.rows(
@@ -206,6 +206,10 @@ class Checks:
         assert "'#1' counts the rows" in said and "=#1" not in said, said
         said = by_hand(self.file("nmea.csv", ["utc_time(hhmmss.sss),wx (deg/s)", *self.rows(lambda i, x, y, z: (f"{120000 + i / RATE_HZ:.3f}", x))]), RATE_HZ)[1]
         assert "no time column" in said, said
+        path = self.file("jitter.csv", ["time,wx (deg/s)", *self.rows(lambda i, x, y, z: (f"{(i + 3 * (i * i % 7) / 7) / RATE_HZ:.4f}", x))])
+        said = typed(path)[1]
+        assert "expected more than in the row before" in said and "--sample-rate HZ reads all rows as even" in said, said
+        assert abs(typed(path, "--sample-rate", RATE_HZ)[0]["x"] / N - 1) < 0.05
         path = self.file("names.csv", ["时间(s),角速度X(°/s),温度(°C)", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 25))])
         to = self.folder / "names_read.csv"
         assert ran("convert", path, to).returncode == 0

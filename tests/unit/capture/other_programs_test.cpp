@@ -64,6 +64,11 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // A reference of one axis under the capture's name.
       {rows_of("t_s,rate_radps,reference_rate_radps\n", "0.{i},{x},{y}"),
        {"reference_rate 'reference_rate_radps' in radps"}},
+      // A rate table beside a sensor of one axis, in the table's unit.
+      {rows_of("time_s,gyro_x_dps,table_rpm\n", "0.{i},{x},{digit}.5"),
+       {"reference_rate_x 'table_rpm' in rpm"}},
+      {rows_of("time_s,rate_dps,Turntable rate Z (deg/s)\n", "0.{i},{x},{digit}.5"),
+       {"reference_rate 'Turntable rate Z (deg/s)' in deg/s"}},
       // OxIOD data set, imu.csv: roll, pitch, yaw, rates, gravity.
       {rows_of("", "1505306516.{i},0.01,0.02,{angle},{x},{y},{z},0.1,0.2,0.97"),
        {"--column 'rate_x_radps=#5:rad/s' --column 'rate_y_radps=#6:rad/s' --column 'rate_z_radps=#7:rad/s'; "
