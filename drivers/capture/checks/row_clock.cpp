@@ -20,11 +20,12 @@ struct Rollover {
   double length_s;
   const char* what;
 };
-constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
+constexpr std::array<Rollover, 6> kRollovers{{{604'800.0, "a GPS week"},
                                               {86'400.0, "a day"},
                                               {0x1p32 * 1e-6, "a count of µs in 32 bits"},
                                               {0x1p32 * 1e-4, "a count of 100 µs in 32 bits"},
-                                              {0x1p32 * 1e-3, "a count of ms in 32 bits"}}};
+                                              {0x1p32 * 1e-3, "a count of ms in 32 bits"},
+                                              {0x1p16 * 1e-3, "a count of ms in 16 bits"}}};
 
 constexpr std::size_t kFewBursts = 8, kLateBursts = 16, kLateRows = 128;
 // No packet has as many rows; a logger that records for some seconds now and then has them, at even times.

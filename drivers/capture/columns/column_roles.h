@@ -97,7 +97,8 @@ struct RateCandidate {
   std::size_t place = 0;
   std::string unit;  // "" if unknown
   std::string axis;
-  double scale = 1.0;  // of counts
+  std::vector<std::string> units{};  // possible ones, most likely first, if its name leaves some
+  double scale = 1.0;                // of counts
   bool reference = false, increment = false;
 };
 
@@ -108,6 +109,8 @@ std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates);
 
 // True if all cells are empty.
 bool is_empty(const std::vector<std::string>& cells);
+// True if some cells are numbers, and the others are empty.
+bool are_numbers(const std::vector<std::string>& cells);
 
 // True if three columns together have the length of gravity, i.e. are an accelerometer at rest: in m/s², g,
 // mg or 16-bit counts with a range of 2, 4, 8 or 16 g.

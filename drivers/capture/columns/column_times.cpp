@@ -6,8 +6,10 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <iomanip>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -22,6 +24,9 @@ namespace {
 
 constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // range of logged gyros' sample rates
 constexpr std::size_t kFewRows = 8;                          // too few to judge a column
+// Between the rows of a slow log, and their rounding.
+constexpr std::array<double, 7> kSlowPeriods_s{1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0};
+constexpr double kSamePeriod = 1e-3;
 
 // Number after one of these names in a line above the table.
 std::optional<double> stated(const std::vector<std::string>& comments,
@@ -104,21 +109,40 @@ double mean_step(const std::vector<double>& values) {
   return forward / static_cast<double>(values.size() - 1);
 }
 
-// Unit in which the values are times since 1970, or the only one with a plausible sample rate.
-std::string unit_by_values(const std::vector<double>& values) {
-  if (values.size() < 2) return "";
+std::string in_hz(double period_s) {
+  std::ostringstream out;
+  out << std::setprecision(4) << 1.0 / period_s << " Hz";
+  return out.str();
+}
+
+// Sets the unit in which the values are times since 1970, or the only one with a plausible sample rate. The remark names
+// another one in which the rows are as far apart as those of a slow log.
+void guess_unit(CsvTime& time, const std::vector<double>& values) {
+  if (values.size() < 2) return;
   const double step = mean_step(values);
-  std::string found;
   for (const UnitOfTime& unit : kTimeUnits) {
     const double rate_hz = 1.0 / (step * unit.s);
     if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
-        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz)
-      return std::string(unit.name);
+        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz) {
+      time.unit = unit.name;
+      return;
+    }
     if (!(rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz)) continue;
-    if (!found.empty()) return "";
-    found = unit.name;
+    if (!time.unit.empty()) return time.unit.clear();
+    time.unit = unit.name;
   }
-  return found;
+  if (time.unit.empty()) return;
+  time.remark = " (not named; gives " + in_hz(step * time.unit_s());
+  for (const char* unit : {"s", "ms", "min", "h", "d"}) {
+    const double period_s = step * CsvTime{"", unit}.unit_s();
+    const bool slow = std::ranges::any_of(
+        kSlowPeriods_s, [=](double s) { return std::abs(period_s / s - 1.0) < kSamePeriod; });
+    if (unit == time.unit || !slow) continue;
+    time.remark +=
+        "; " + in_hz(period_s) + " if it is in " + unit + ": " + option_for(CsvTime{time.header, unit});
+    break;
+  }
+  time.remark += ")";
 }
 
 // Likelihood from its name that a column is the rows' time; 0: none.
@@ -196,7 +220,7 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   if (!dated && (values.size() != cells.size() || !goes_on(values, each, table.named) ||
                  (out.unit.empty() && counts(values))))
     return std::nullopt;
-  if (out.unit.empty()) out.unit = unit_by_values(values);
+  if (out.unit.empty()) guess_unit(out, values);
   return out;
 }
 
@@ -268,6 +292,11 @@ double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) 
 }  // namespace
 
 bool is_empty(const std::vector<std::string>& cells) { return !cells.empty() && filled(cells).empty(); }
+
+bool are_numbers(const std::vector<std::string>& cells) {
+  const std::size_t numbers = numbers_in(cells).size();
+  return numbers > 0 && numbers == filled(cells).size();
+}
 
 std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates) {
   std::vector<CsvTime> best;

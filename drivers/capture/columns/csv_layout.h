@@ -36,6 +36,7 @@ struct CsvTime {
   // Unit, "ms" or "100us"; for dates like 5/6/2026 the order, "d/m/y" or "m/d/y"; "": seconds, or month
   // first.
   std::string unit;
+  std::string remark{};  // about a unit that no name states: " (not named; gives 100 Hz)"
 
   // Parses "t:ms", "t:100us", "t". Throws likewise.
   static CsvTime parse(const std::string& text);

@@ -67,6 +67,7 @@ void keep_possible(std::vector<std::string>& units, const std::vector<std::strin
 
 // A rate in motion is as smooth as an angle, so only a lone column without a name is offered as an angle first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
+  if (!rates.front().units.empty()) return rates.front().units;
   std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
   const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
   if (rates.front().increment)

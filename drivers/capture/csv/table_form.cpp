@@ -2,6 +2,7 @@
 #include "drivers/capture/csv/table_form.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <set>
 #include <utility>
@@ -55,7 +56,10 @@ std::vector<std::string> names_in(std::string_view line, char separator, const R
   for (const char other : {',', ';', '\t', ' '}) {
     std::vector<std::string> cells;
     for (std::string& cell : cells_of(without_mark(line), other))
-      if (other == ' ' && !cells.empty() && (cell.starts_with('[') || cell.starts_with('(')))
+      // "Rate: 100 Hz" is a sentence.
+      if (is_value(cell, other))
+        cells.clear();
+      else if (other == ' ' && !cells.empty() && (cell.starts_with('[') || cell.starts_with('(')))
         cells.back() += ' ' + cell;
       else
         cells.push_back(std::move(cell));
@@ -193,13 +197,47 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
       comments.push_back("sample rate " + shortest(1.0 / *step_s));
     if (cells[0] == "Y_Unit_Label") {
       units = std::move(cells);
-      units[0].clear();
+      units[0] = "s";  // of X_Value
     }
   }
   lines.erase(lines.begin(), last.base());
   if (!lines.empty() && lines[0].text.ends_with("\tComment"))
     lines[0].text.remove_suffix(std::string_view("\tComment").size());
   return units;
+}
+
+// Without a header, in a log whose lines have several widths: the text of the rows that says their kind, as --only takes
+// it; "" otherwise.
+std::string kind_of_rows(const Grid& grid) {
+  const auto is_text = [&](const std::string& cell) {
+    return !cell.empty() && !is_value(cell, grid.separator());
+  };
+  const Row& first = grid.rows()[*grid.first()];
+  for (std::size_t place = 0; place < first.cells.size(); ++place) {
+    const std::string& kind = first.cells[place];
+    bool alike = is_text(kind), others = false;
+    for (const Row& row : grid.rows()) {
+      if (!row.is_row() || row.cells.size() <= place) continue;
+      const bool differs = row.cells[place] != kind;
+      alike = alike && !(differs && row.is_as_wide(first.cells.size()));
+      others = others || (differs && is_text(row.cells[place]));
+    }
+    if (alike && others) return "#" + std::to_string(place + 1) + "=" + kind;
+  }
+  return "";
+}
+
+// Drops rows of other kinds than the layout's, which may have any width.
+void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
+  if (!is_number_of_column(layout.only_header) || layout.only_value == "*") return;
+  const std::size_t place = std::strtoul(layout.only_header.c_str() + 1, nullptr, 10) - 1;
+  std::size_t row = 0;
+  std::erase_if(lines, [&](const Line&) {
+    const Row& each = grid.rows()[row++];
+    return !each.comment && each.values > 0 &&
+           (place >= each.cells.size() || each.cells[place] != layout.only_value);
+  });
+  grid = Grid(lines, grid.separator());
 }
 
 // First rows as cells by column.
@@ -262,7 +300,8 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   if (plain == lines.end()) fail_at(path, 0, "no header line, expected 'time_s,rate_radps,…'");
   if (!separator && is_capture_header(plain->text) && plain->text.find(',') != std::string_view::npos)
     separator = ',';
-  const Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
+  Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
+  keep_kind(layout, lines, grid);
   form.separator = grid.separator();
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (!grid.rows()[i].comment && grid.rows()[i].cells.size() > kInputLimits.csv_columns)
@@ -270,8 +309,15 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
   const bool headed = given.empty() && take_header(lines, grid, layout, form);
+  if (!headed && given.empty() && grid.first() && layout.only_header.empty()) {
+    form.kind = kind_of_rows(grid);
+    CsvLayout kind;
+    if (!form.kind.empty()) kind.parse_only(form.kind);
+    keep_kind(kind, lines, grid);
+  }
   if (headed) {
-    if (units.size() == sample.names.size()) sample.units = units;
+    if (units.size() >= sample.names.size())
+      sample.units.assign(units.begin(), units.begin() + std::ssize(sample.names));
     sample.named = !are_of_one_matrix(sample.names);
   } else if (grid.first()) {
     sample.named = !given.empty();
@@ -279,6 +325,8 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
       sample.names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
+    for (std::size_t i = 0; given.empty() && i < *grid.first(); ++i)
+      form.rows_above += grid.rows()[i].is_row() && grid.rows()[i].is_as_wide(grid.width()) ? 1 : 0;
     sample_rows(grid, *grid.first(), sample);
     if (const Row* const above = *grid.first() > 0 ? &grid.rows()[*grid.first() - 1] : nullptr;
         above != nullptr && !above->comment && above->values == 0 && above->cells.size() > 1) {

@@ -279,11 +279,23 @@ class Checks:
 
     def check_sensors_in_turn(self):
         path = self.file("turn.csv", ["time_s,sensor_id,rate_x_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, i % 2, (x + i % 2) * RAD))])
-        _, said = typed(path)
-        option = re.search(r"--only sensor_id=\S+", said)
-        assert option, said
+        densities, said = typed(path)
+        option = re.search(r"--only sensor_id=[^;\s]+", said)
+        assert densities is None and option, said
+        assert "--only 'sensor_id=*'" in said and typed(path, "--only", "sensor_id=*")[0], said
         densities, _ = typed(path, *shlex.split(option.group(0)))
         assert abs(densities["x"] / N * math.sqrt(0.5) - 1) < 0.07, densities  # half of the samples per second
+
+    def check_rows_of_several_kinds_without_a_header(self):
+        """From the first row on, wherever three of a kind stand in a row; with and without the option."""
+        rows = [line for i, row in enumerate(self.rows(lambda i, x, y, z: (5 * i, "imu", x * RAD, y * RAD, z * RAD)))
+                for line in ([row] if i > ROWS // 2 else [row, f"{5 * i},baro,100.1"])]
+        path, to = self.file("kinds.csv", rows), self.folder / "kinds_read.csv"
+        layout = ["--time", "#1:ms", *(word for i, a in enumerate("xyz") for word in ("--column", f"rate_{a}_radps=#{3 + i}:rad/s"))]
+        for only in ((), ("--only", "#2=imu")):
+            assert ran("convert", path, to, *layout, *only).returncode == 0
+            lines = to.read_text().splitlines()
+            assert len(lines) == ROWS + 1 and lines[1].startswith("0,"), (len(lines), lines[:3])
 
     def check_what_the_values_say(self):
         def findings(name, rates, unit=RAD, rate_hz=RATE_HZ):

@@ -66,7 +66,7 @@ void LongTable::keep_rate_rows(const std::string& path) {
   header_line = 0;
   lines.clear();
   notices.push_back(path + ": " + std::to_string(size()) + " of " + std::to_string(before) +
-                    " rows have a rate, and only they are read: the others are of a faster sensor");
+                    " rows have a rate, and only they are read: the others are of another sensor");
 }
 
 }  // namespace ifog::tools
