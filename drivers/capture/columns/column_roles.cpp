@@ -109,7 +109,8 @@ void add_triple(const TableSample& table, Sensors& sensors) {
     sensors["x y z"] = bare;
 }
 
-Sensors sensors_named(const TableSample& table, bool references, bool angles) {
+// angles: columns that are named as angles, which are used where no rate is.
+Sensors sensors_of(const TableSample& table, bool references, bool angles = false) {
   Sensors sensors;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
@@ -126,14 +127,8 @@ Sensors sensors_named(const TableSample& table, bool references, bool angles) {
           return table.names[column.place] == table.names[first.place];
         }))
       for (std::size_t i = 0; i < 3; ++i) columns[i].axis = std::string(1, static_cast<char>('x' + i));
-  return sensors;
-}
-
-// Angles only where no rate is.
-Sensors sensors_of(const TableSample& table, bool references) {
-  Sensors sensors = sensors_named(table, references, false);
   if (!references) add_triple(table, sensors);
-  return sensors.empty() ? sensors_named(table, references, true) : sensors;
+  return sensors.empty() && !angles ? sensors_of(table, references, true) : sensors;
 }
 
 bool axes_differ(const std::vector<RateCandidate>& columns) {

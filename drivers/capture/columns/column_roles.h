@@ -65,11 +65,12 @@ std::string typed(const std::string& unit);
 // A column that counts rows ("Sample No.") and is no time, or "".
 std::string counting_column(const TableSample& table);
 
+inline constexpr std::size_t kFewRows = 8;  // too few to judge a column
+
 // True for numbers that are not all equal.
 bool varies(const std::vector<std::string>& cells);
-// True if values change little from row to row compared with their range, like an angle and unlike white
-// noise.
-bool is_smooth(const std::vector<std::string>& cells);
+// The finite numbers among the cells.
+std::vector<double> numbers_in(const std::vector<std::string>& cells);
 // True for integers with several values.
 bool is_whole(const std::vector<std::string>& cells);
 

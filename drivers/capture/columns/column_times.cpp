@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
 #include <iterator>
 #include <optional>
 #include <sstream>
@@ -23,10 +22,6 @@ namespace ifog {
 namespace {
 
 constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // range of logged gyros' sample rates
-constexpr std::size_t kFewRows = 8;                          // too few to judge a column
-// Between the rows of a slow log, and their rounding.
-constexpr std::array<double, 7> kSlowPeriods_s{1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0};
-constexpr double kSamePeriod = 1e-3;
 
 // Number after one of these names in a line above the table.
 std::optional<double> stated(const std::vector<std::string>& comments,
@@ -55,13 +50,6 @@ std::vector<std::string> filled(const std::vector<std::string>& cells) {
   return out;
 }
 
-std::vector<double> numbers_in(const std::vector<std::string>& cells) {
-  std::vector<double> values;
-  for (const std::string& cell : cells)
-    if (const auto value = finite_number(cell)) values.push_back(*value);
-  return values;
-}
-
 // True if values increase at least once in `each` steps, and hardly ever decrease. A named time may decrease more often, as where
 // a log is not in order: its rows are checked one by one.
 bool goes_on(const std::vector<double>& values, std::size_t each, bool named) {
@@ -82,17 +70,6 @@ bool counts(const std::vector<double>& values) {
   return other <= 1 && std::ranges::all_of(values, [](double v) { return v == std::floor(v); });
 }
 
-struct UnitOfTime {
-  std::string_view name;
-  double s, since_1970;  // seconds per unit; value for the year 2000, in seconds since 1970
-};
-// Days are counted from other years; see their rate.
-constexpr std::array<UnitOfTime, 5> kTimeUnits{{{"s", 1.0, 9.4e8},
-                                                {"ms", 1e-3, 9.4e11},
-                                                {"us", 1e-6, 9.4e14},
-                                                {"ns", 1e-9, 9.4e17},
-                                                {"d", 86'400.0, 1e99}}};
-
 // Unit in which the rows have the stated rate; "" if there is none.
 std::string unit_by_stated_rate(const TableSample& table, double step) {
   constexpr double kNear = 0.1;  // relative; units differ by factors of ten
@@ -109,40 +86,35 @@ double mean_step(const std::vector<double>& values) {
   return forward / static_cast<double>(values.size() - 1);
 }
 
-std::string in_hz(double period_s) {
-  std::ostringstream out;
-  out << std::setprecision(4) << 1.0 / period_s << " Hz";
-  return out.str();
-}
-
 // Sets the unit in which the values are times since 1970, or the only one with a plausible sample rate. The remark names
 // another one in which the rows are as far apart as those of a slow log.
 void guess_unit(CsvTime& time, const std::vector<double>& values) {
   if (values.size() < 2) return;
   const double step = mean_step(values);
-  for (const UnitOfTime& unit : kTimeUnits) {
-    const double rate_hz = 1.0 / (step * unit.s);
-    if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
-        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz) {
-      time.unit = unit.name;
+  for (const char* unit : {"s", "ms", "us", "ns", "d"}) {
+    const double unit_s = CsvTime{"", unit}.unit_s(), rate_hz = 1.0 / (step * unit_s);
+    // From the year 2000 on; days are counted from other years.
+    const double since = values.front() * unit_s / 9.4e8;
+    if (unit_s <= 1.0 && since >= 1.0 && since < 5.0 && rate_hz > 1e-2 * kSlowest_hz &&
+        rate_hz < 10.0 * kFastest_hz) {
+      time.unit = unit;
       return;
     }
     if (!(rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz)) continue;
     if (!time.unit.empty()) return time.unit.clear();
-    time.unit = unit.name;
+    time.unit = unit;
   }
   if (time.unit.empty()) return;
-  time.remark = " (not named; gives " + in_hz(step * time.unit_s());
-  for (const char* unit : {"s", "ms", "min", "h", "d"}) {
-    const double period_s = step * CsvTime{"", unit}.unit_s();
-    const bool slow = std::ranges::any_of(
-        kSlowPeriods_s, [=](double s) { return std::abs(period_s / s - 1.0) < kSamePeriod; });
-    if (unit == time.unit || !slow) continue;
-    time.remark +=
-        "; " + in_hz(period_s) + " if it is in " + unit + ": " + option_for(CsvTime{time.header, unit});
-    break;
-  }
-  time.remark += ")";
+  std::ostringstream remark;
+  remark.precision(4);
+  remark << " (not named; gives " << 1.0 / (step * time.unit_s()) << " Hz";
+  for (const char* unit : {"s", "ms", "min", "h", "d"})
+    for (const double slow_s : {1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0})
+      if (const double period_s = step * CsvTime{"", unit}.unit_s();
+          unit != time.unit && std::abs(period_s - slow_s) < 1e-3 * slow_s)
+        remark << "; " << 1.0 / slow_s << " Hz if it is in " << unit << ": "
+               << option_for(CsvTime{time.header, unit});
+  time.remark = remark.str() + ")";
 }
 
 // Likelihood from its name that a column is the rows' time; 0: none.
@@ -291,6 +263,13 @@ double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) 
 
 }  // namespace
 
+std::vector<double> numbers_in(const std::vector<std::string>& cells) {
+  std::vector<double> values;
+  for (const std::string& cell : cells)
+    if (const auto value = finite_number(cell)) values.push_back(*value);
+  return values;
+}
+
 bool is_empty(const std::vector<std::string>& cells) { return !cells.empty() && filled(cells).empty(); }
 
 bool are_numbers(const std::vector<std::string>& cells) {
@@ -345,20 +324,6 @@ bool varies(const std::vector<std::string>& cells) {
          (values.size() < 2 || std::ranges::any_of(values, [&](double v) { return v != values[0]; }));
 }
 
-// Von Neumann's ratio: mean squared difference / variance; 2 for white noise.
-bool is_smooth(const std::vector<std::string>& cells) {
-  constexpr double kSmooth = 0.5;
-  const std::vector<double> values = numbers_in(cells);
-  if (values.size() < kFewRows) return false;
-  double mean = 0.0, around = 0.0, differences = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    around += (values[i] - mean) * (values[i] - mean);
-    if (i > 0) differences += (values[i] - values[i - 1]) * (values[i] - values[i - 1]);
-  }
-  return differences < kSmooth * around;
-}
-
 bool is_whole(const std::vector<std::string>& cells) {
   const std::vector<double> values = numbers_in(cells);
   return values.size() >= kFewRows && varies(cells) &&
@@ -375,10 +340,9 @@ int digits_of_second(const std::string& name, const std::vector<std::string>& ce
 }
 
 std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time) {
-  constexpr std::size_t kFew = 10;
   const std::vector<std::string> cells = filled(table.cells[place]);
   const std::vector<double> values = numbers_in(cells);
-  if (values.size() < std::max(kFew, cells.size()) || time.unit_s() != 1.0 ||
+  if (values.size() < std::max(kFewRows, cells.size()) || time.unit_s() != 1.0 ||
       !std::ranges::all_of(values, [](double t) { return t == std::floor(t); }))
     return "";
   const bool unit_known =

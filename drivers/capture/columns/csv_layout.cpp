@@ -170,6 +170,7 @@ void CsvLayout::parse_only(const std::string& text) {
     refuse(text, "HEADER=VALUE, sensor_id=0");
   only_header = text.substr(0, equals);
   only_value = text.substr(equals + 1);
+  if (only_value == "*") only_value.clear();
 }
 
 bool is_number_of_column(const std::string& header) {

@@ -18,8 +18,6 @@
 namespace ifog {
 namespace {
 
-constexpr std::string_view kAllRows = "*";  // of --only: of whatever sensor
-
 // Index of a column given by its header or number ("#3").
 std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
                      const std::string& path, std::size_t line) {
@@ -73,8 +71,7 @@ class Chooser {
   CsvHeader choose() {
     header_.cells = names_;
     if (header_.layout.only_header.empty()) look_what_alternates();
-    if (!header_.layout.only_header.empty() && header_.layout.only_value != kAllRows)
-      keep_only(place(header_.layout.only_header));
+    if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
     if (are_rates_of_several()) fail(several_);
     return std::move(header_);
@@ -110,7 +107,7 @@ class Chooser {
       };
       if (gyro.empty()) {
         several_ = said + "rows of several sensors; one of them: " + option(other) +
-                   "; all as of one: " + option(std::string(kAllRows));
+                   "; all as of one: " + option("*");
         names_sensor_ = i;
         continue;
       }
@@ -240,7 +237,6 @@ class Chooser {
   // Names columns of numbers, other than times and counts of the rows, of which nobody knows the quantity, and how a
   // turn rate among them is read.
   void tell_not_read(const TableReading& reading) {
-    constexpr std::size_t kMostNamed = 6;
     const TableSample& sample = form_.sample;
     std::vector<std::string> left;
     std::string rate;
@@ -259,11 +255,7 @@ class Chooser {
       const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
       rate = "; a true rate is read by " + reading.options + " " + option_for(reference, sample.unit_of(i));
     }
-    if (left.empty()) return;
-    const std::size_t more = left.size() - std::min(left.size(), kMostNamed);
-    left.resize(left.size() - more);
-    header_.notices.push_back(path_ + ": not read: " + listed(left) +
-                              (more == 0 ? "" : " and " + std::to_string(more) + " more") + rate);
+    if (!left.empty()) header_.notices.push_back(path_ + ": not read: " + listed(left) + rate);
   }
 
   // Why columns have numbers and no names; "" if they have names.

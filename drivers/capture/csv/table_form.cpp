@@ -229,7 +229,7 @@ std::string kind_of_rows(const Grid& grid) {
 
 // Drops rows of other kinds than the layout's, which may have any width.
 void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
-  if (!is_number_of_column(layout.only_header) || layout.only_value == "*") return;
+  if (!is_number_of_column(layout.only_header) || layout.only_value.empty()) return;
   const std::size_t place = std::strtoul(layout.only_header.c_str() + 1, nullptr, 10) - 1;
   std::size_t row = 0;
   std::erase_if(lines, [&](const Line&) {
