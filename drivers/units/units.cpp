@@ -218,9 +218,10 @@ constexpr std::array kTemperatures{QuantityUnit{"degc", 1.0, kZeroCelsius_K},
                                    QuantityUnit{"kelvin", 1.0}};
 constexpr std::array kAccelerations{QuantityUnit{"mps2", 1.0},           QuantityUnit{"m/s2", 1.0},
                                     QuantityUnit{"m/s^2", 1.0},          QuantityUnit{"m/s\xC2\xB2", 1.0},
-                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"g", kGravity},
-                                    QuantityUnit{"mg", kGravity * 1e-3}, QuantityUnit{"ug", kGravity * 1e-6},
-                                    QuantityUnit{"gal", 1e-2},           QuantityUnit{"mgal", 1e-5}};
+                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"m s^-2", 1.0},
+                                    QuantityUnit{"g", kGravity},         QuantityUnit{"mg", kGravity * 1e-3},
+                                    QuantityUnit{"ug", kGravity * 1e-6}, QuantityUnit{"gal", 1e-2},
+                                    QuantityUnit{"mgal", 1e-5}};
 constexpr std::array kVoltages{QuantityUnit{"v", 1.0}, QuantityUnit{"mv", 1e-3}, QuantityUnit{"uv", 1e-6},
                                QuantityUnit{"kv", 1e3}};
 constexpr std::array kCurrents{QuantityUnit{"a", 1.0}, QuantityUnit{"ma", 1e-3}, QuantityUnit{"ua", 1e-6}};

@@ -106,7 +106,8 @@ RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
 
 double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   const auto found = std::ranges::find_if(kRollovers, [&](const Rollover& each) {
-    return now_s + each.length_s > last_s_ && now_s + each.length_s <= last_s_ + kLate_s;
+    return last_s_ - offset_s_ < each.length_s && now_s + each.length_s > last_s_ &&
+           now_s + each.length_s <= last_s_ + kLate_s;
   });
   if (found == kRollovers.end()) return 0.0;
   notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +

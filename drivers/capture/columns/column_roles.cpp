@@ -2,6 +2,7 @@
 #include "drivers/capture/columns/column_roles.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 #include <utility>
@@ -31,15 +32,15 @@ bool speaks_of_angle(const Words& words) {
   return words.have(Role::angle) && !words.have(Role::speed) && !speaks_of_increment(words);
 }
 
-bool is_count(const std::string& word) { return word.find_first_not_of("0123456789") == std::string::npos; }
-
 bool speaks_of_rate(const Words& words) {
   return words.have(Role::rate) || (words.have(Role::speed) && words.have(Role::turn)) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
          // wz; w_RS_S_x of kalibr; gx, gx2, g_x, IMU_gx.
-         (!words.axis.empty() && (words.first() == "w" ||
-                                  (words.first() == "g" && (words.size() == 1 || is_count(words.words[1]))) ||
-                                  words.text.ends_with("_g" + words.axis)));
+         (!words.axis.empty() &&
+          (words.first() == "w" ||
+           (words.first() == "g" &&
+            (words.size() == 1 || std::isdigit(static_cast<unsigned char>(words.words[1][0])) != 0)) ||
+           words.text.ends_with("_g" + words.axis)));
 }
 
 // Sets the unit of a rate by name or convention, or the possible ones: a bare unit of angle leaves open of what it is.
@@ -66,10 +67,8 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
              angle = angle_unit(unit, false, false).has_value(), turned = speaks_of_angle(words) && !rate,
              gyro = speaks_of_rate(words);
   if (!unit.empty() && !rate && !angle) return std::nullopt;
-  RateCandidate found;
-  found.axis = words.axis;
-  found.reference = words.have(Role::truth);
-  found.increment = speaks_of_increment(words);
+  RateCandidate found{
+      .axis = words.axis, .reference = words.have(Role::truth), .increment = speaks_of_increment(words)};
   if (angles) {
     if (!angle || (!turned && !(words.has("turn") && words.axis == "z"))) return std::nullopt;
     if (turned && (gyro || found.reference))

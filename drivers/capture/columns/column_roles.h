@@ -96,7 +96,7 @@ CsvColumn stated_scale(const std::vector<std::string>& comments);
 // A possible rate column.
 struct RateCandidate {
   std::size_t place = 0;
-  std::string unit;  // "" if unknown
+  std::string unit{};  // "" if unknown
   std::string axis;
   std::vector<std::string> units{};  // possible ones, most likely first, if its name leaves some
   double scale = 1.0;                // of counts
@@ -131,7 +131,24 @@ std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<
 [[nodiscard]] std::string lower(std::string text);
 
 // Roles of a word in a column name; see column_words.cpp.
-enum class Role { rate, speed, turn, glued, no_rate, truth, step, angle, time, no_time, ms, us, ns, s, one };
+enum class Role {
+  rate,
+  speed,
+  turn,
+  glued,
+  no_rate,
+  wanted,
+  truth,
+  step,
+  angle,
+  time,
+  no_time,
+  ms,
+  us,
+  ns,
+  s,
+  one
+};
 [[nodiscard]] bool says(std::string_view word, Role role);
 
 // Parsed column name: "w_RS_S_x [rad s^-1]" has the words w, rs and s and the axis x.

@@ -108,12 +108,15 @@ void guess_unit(CsvTime& time, const std::vector<double>& values) {
   std::ostringstream remark;
   remark.precision(4);
   remark << " (not named; gives " << 1.0 / (step * time.unit_s()) << " Hz";
-  for (const char* unit : {"s", "ms", "min", "h", "d"})
-    for (const double slow_s : {1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0})
-      if (const double period_s = step * CsvTime{"", unit}.unit_s();
-          unit != time.unit && std::abs(period_s - slow_s) < 1e-3 * slow_s)
-        remark << "; " << 1.0 / slow_s << " Hz if it is in " << unit << ": "
-               << option_for(CsvTime{time.header, unit});
+  for (const char* unit : {"s", "ms", "min", "h", "d"}) {
+    const double period_s = step * CsvTime{"", unit}.unit_s();
+    const auto near = [=](double slow_s) { return std::abs(period_s - slow_s) < 1e-3 * slow_s; };
+    if (unit == time.unit || std::ranges::none_of(std::array{1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0}, near))
+      continue;
+    remark << "; " << 1.0 / period_s << " Hz if it is in " << unit << ": "
+           << option_for(CsvTime{time.header, unit});
+    break;
+  }
   time.remark = remark.str() + ")";
 }
 
@@ -345,17 +348,12 @@ std::string whole_times_notice(const TableSample& table, std::size_t place, cons
   if (values.size() < std::max(kFewRows, cells.size()) || time.unit_s() != 1.0 ||
       !std::ranges::all_of(values, [](double t) { return t == std::floor(t); }))
     return "";
-  const bool unit_known =
-      time_unit(table.stated_unit(place)).has_value() || cells[0].find('.') != std::string::npos;
   const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
-  const std::string name = printable(time.header);
-  if (step == 1.0 && (time.header != "time_s" || !unit_known))
-    return name +
-           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
-           "count: --sample-rate HZ";
-  if (unit_known || !time.unit.empty()) return "";
-  return name + " is whole numbers, " + shortest(step) +
-         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
+  const bool decimals = cells[0].find('.') != std::string::npos;
+  if (decimals || (step != 1.0 && (!time.unit.empty() || time_unit(table.stated_unit(place))))) return "";
+  return printable(time.header) + " is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms") +
+         (step == 1.0 ? "; if they count the rows: --sample-rate HZ" : "");
 }
 
 std::optional<DateOrder> date_order(const std::vector<std::string>& cells) {

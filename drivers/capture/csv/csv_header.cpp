@@ -54,7 +54,7 @@ class Chooser {
         line_(!has_lines              ? 0
               : form_.header_line > 0 ? form_.header_line
                                       : form_.last_line + 1) {
-    header_.layout = layout;
+    header_.layout = form_.layout;
     header_.separator = form_.separator;
     header_.last_line = form_.last_line;
     for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
@@ -62,10 +62,10 @@ class Chooser {
       header_.notices.push_back(path_ + ": " + std::to_string(form_.rows_above) +
                                 " rows among lines of other widths, above line " +
                                 std::to_string(form_.last_line + 1) + ", are not read");
-    if (form_.kind.empty()) return;
-    header_.layout.parse_only(form_.kind);
-    header_.notices.push_back(path_ + ": rows of several kinds; those of --only " + shell_word(form_.kind) +
-                              " are read");
+    if (form_.layout.only_header == layout.only_header) return;
+    kinds_ = "of rows of several kinds are read those of --only " +
+             shell_word(form_.layout.only_header + "=" + form_.layout.only_value);
+    header_.notices.push_back(path_ + ": " + kinds_);
   }
 
   CsvHeader choose() {
@@ -73,7 +73,7 @@ class Chooser {
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
-    if (are_rates_of_several()) fail(several_);
+    if (are_rates_of_several()) fail(kinds_);
     return std::move(header_);
   }
 
@@ -106,8 +106,8 @@ class Chooser {
         return "--only " + shell_word(form_.sample.header_of(i) + "=" + value);
       };
       if (gyro.empty()) {
-        several_ = said + "rows of several sensors; one of them: " + option(other) +
-                   "; all as of one: " + option("*");
+        kinds_ = said + "rows of several sensors; one of them: " + option(other) +
+                 "; all as of one: " + option("*");
         names_sensor_ = i;
         continue;
       }
@@ -119,13 +119,13 @@ class Chooser {
     }
   }
 
-  // True if the rates of more than one sensor stand below each other.
+  // True if rates of more than one sensor stand below each other.
   [[nodiscard]] bool are_rates_of_several() const {
     std::set<std::string> sensors;
     for (const FileColumn& column : header_.columns)
       for (std::size_t row = 0; column.rate && row < form_.sample.cells[column.place].size(); ++row)
-        if (!several_.empty() && !form_.sample.cells[column.place][row].empty())
-          sensors.insert(form_.sample.cells[names_sensor_][row]);
+        if (names_sensor_ && !form_.sample.cells[column.place][row].empty())
+          sensors.insert(form_.sample.cells[*names_sensor_][row]);
     return sensors.size() > 1;
   }
 
@@ -227,15 +227,15 @@ class Chooser {
     }
     if (found.ways.empty() && form_.sample.named) fail(no_rate_among(names_));
     fail(
-        without_names() + (several_.empty() ? "" : several_ + "; ") + found.why + options_in_words(found) +
+        without_names() + (kinds_.empty() ? "" : kinds_ + "; ") + found.why + options_in_words(found) +
         (found.ways.empty()
              ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
                "with the numbers and units of this file"
              : ""));
   }
 
-  // Names columns of numbers, other than times and counts of the rows, of which nobody knows the quantity, and how a
-  // turn rate among them is read.
+  // Names columns of numbers that are not read, except times and counts of the rows, and how a rate that was commanded
+  // is read as the true one.
   void tell_not_read(const TableReading& reading) {
     const TableSample& sample = form_.sample;
     std::vector<std::string> left;
@@ -251,11 +251,16 @@ class Chooser {
       if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == counting_column(sample))
         continue;
       left.push_back(header);
-      if (!angle_unit(sample.unit_of(i), true, false)) continue;
+      if (!words.have(Role::wanted) || !angle_unit(sample.unit_of(i), true, false)) continue;
       const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
-      rate = "; a true rate is read by " + reading.options + " " + option_for(reference, sample.unit_of(i));
+      rate = "; if the rate was as commanded: " + reading.options + " " +
+             option_for(reference, sample.unit_of(i));
     }
-    if (!left.empty()) header_.notices.push_back(path_ + ": not read: " + listed(left) + rate);
+    const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;
+    left.resize(named);
+    if (named > 0)
+      header_.notices.push_back(path_ + ": not read: " + listed(left) +
+                                (more > 0 ? " and " + std::to_string(more) + " more" : "") + rate);
   }
 
   // Why columns have numbers and no names; "" if they have names.
@@ -309,8 +314,8 @@ class Chooser {
   const std::size_t line_;  // of the header; 0: none
   CsvHeader header_;
   std::size_t rates_ = 0;
-  std::string several_;           // what is said of rows of several sensors in turn; "" without them
-  std::size_t names_sensor_ = 0;  // the column that names their sensors
+  std::string kinds_;                        // what is said of rows of several kinds or sensors
+  std::optional<std::size_t> names_sensor_;  // the column that names the sensors of rows in turn
 };
 
 }  // namespace

@@ -206,38 +206,40 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
   return units;
 }
 
-// Without a header, in a log whose lines have several widths: the text of the rows that says their kind, as --only takes
-// it; "" otherwise.
-std::string kind_of_rows(const Grid& grid) {
-  const auto is_text = [&](const std::string& cell) {
-    return !cell.empty() && !is_value(cell, grid.separator());
-  };
-  const Row& first = grid.rows()[*grid.first()];
-  for (std::size_t place = 0; place < first.cells.size(); ++place) {
-    const std::string& kind = first.cells[place];
-    bool alike = is_text(kind), others = false;
-    for (const Row& row : grid.rows()) {
-      if (!row.is_row() || row.cells.size() <= place) continue;
-      const bool differs = row.cells[place] != kind;
-      alike = alike && !(differs && row.is_as_wide(first.cells.size()));
-      others = others || (differs && is_text(row.cells[place]));
-    }
-    if (alike && others) return "#" + std::to_string(place + 1) + "=" + kind;
-  }
-  return "";
-}
-
 // Drops rows of other kinds than the layout's, which may have any width.
 void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   if (!is_number_of_column(layout.only_header) || layout.only_value.empty()) return;
   const std::size_t place = std::strtoul(layout.only_header.c_str() + 1, nullptr, 10) - 1;
-  std::size_t row = 0;
+  std::size_t i = 0;
   std::erase_if(lines, [&](const Line&) {
-    const Row& each = grid.rows()[row++];
-    return !each.comment && each.values > 0 &&
-           (place >= each.cells.size() || each.cells[place] != layout.only_value);
+    const Row& row = grid.rows()[i++];
+    return !row.comment && row.values > 0 &&
+           (place >= row.cells.size() || row.cells[place] != layout.only_value);
   });
   grid = Grid(lines, grid.separator());
+}
+
+// In a log whose lines have several widths, keeps the kind of the widest table's rows: a text in one of their columns
+// that others have not. False: there is none.
+bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
+  const std::vector<std::string>& first = grid.rows()[*grid.first()].cells;
+  for (std::size_t place = 0; place < first.size(); ++place) {
+    const auto is_text = [&](const std::string& cell) {
+      return !cell.empty() && !is_value(cell, grid.separator());
+    };
+    bool alike = is_text(first[place]), others = false;
+    for (const Row& row : grid.rows()) {
+      if (!row.is_row() || row.cells.size() <= place || row.cells[place] == first[place]) continue;
+      alike = alike && !row.is_as_wide(first.size());
+      others = others || is_text(row.cells[place]);
+    }
+    if (!alike || !others) continue;
+    layout.only_header = "#" + std::to_string(place + 1);
+    layout.only_value = first[place];
+    keep_kind(layout, lines, grid);
+    return true;
+  }
+  return false;
 }
 
 // First rows as cells by column.
@@ -285,6 +287,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
                      const CsvLayout& layout) {
   std::vector<Line> lines = first_lines(text, path);
   TableForm form;
+  form.layout = layout;
   TableSample& sample = form.sample;
   const std::vector<std::string> units = without_heads(lines, sample.comments);
   std::optional<char> separator;
@@ -308,13 +311,9 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
       fail_at(path, lines[i].number,
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
-  const bool headed = given.empty() && take_header(lines, grid, layout, form);
-  if (!headed && given.empty() && grid.first() && layout.only_header.empty()) {
-    form.kind = kind_of_rows(grid);
-    CsvLayout kind;
-    if (!form.kind.empty()) kind.parse_only(form.kind);
-    keep_kind(kind, lines, grid);
-  }
+  bool headed = given.empty() && take_header(lines, grid, layout, form);
+  if (!headed && given.empty() && grid.first() && layout.only_header.empty())
+    headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, form);
   if (headed) {
     if (units.size() >= sample.names.size())
       sample.units.assign(units.begin(), units.begin() + std::ssize(sample.names));

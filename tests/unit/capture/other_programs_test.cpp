@@ -76,7 +76,8 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
                "0.{i},0,{x},40,3,25,298"),
        {"rate 'Gyro output (deg/s)' in deg/s, humidity 'Humidity [%]' in %, temp 'Temp (degC)' in degC, "
         "temp_7 'Temp [K]' in K\n",
-        "not read: 'Commanded rate (deg/s)', 'Lamp'; a true rate is read by --time 'Time (s):s' --column "
+        "not read: 'Commanded rate (deg/s)', 'Lamp'; if the rate was as commanded: --time 'Time (s):s' "
+        "--column "
         "'rate_radps=Gyro output (deg/s):deg/s'",
         "--column 'reference_rate_radps=Commanded rate (deg/s):deg/s'"}},
       // A unit of angle in a name that says nothing of an angle, an angle by name, and one that no gyro is named with.
@@ -92,7 +93,8 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("time,gyro_z_dps\n", "0.{i},{z}"), {"time 'time' in s (not named; gives 1000 Hz), rate_z"}},
       // PX4's replay without names: rows of several kinds from the first one on.
       {"1000,imu,0.001,0.002,0.003\n1000,baro,100.1\n" + rows_of("", "2{i},imu,{x},{y},{z}\n2{i},mag,0.2"),
-       {"rows of several kinds; those of --only '#2=imu' are read", "--column 'rate_x_radps=#3:rad/s'"}},
+       {"of rows of several kinds are read those of --only '#2=imu'; no time",
+        "--column 'rate_x_radps=#3:rad/s'"}},
       // Typographic minus signs, exponents of Fortran, a sentence above the rows, a second gyro, a name in another language.
       {rows_of("time_s,gyro_z_dps\n", "0.{i},\u22120.00{digit}"), {"rate_z 'gyro_z_dps' in dps"}},
       {rows_of("  TIME(S)  WX(RAD/S)\n", "  1.0{i}D-02  8.73{digit}D-04", 80),
