@@ -60,8 +60,8 @@ class Chooser {
     for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
     if (form_.rows_above > 0)
       header_.notices.push_back(path_ + ": " + std::to_string(form_.rows_above) +
-                                " rows among lines of other widths, above line " +
-                                std::to_string(form_.last_line + 1) + ", are not read");
+                                " lines of numbers above line " + std::to_string(form_.last_line + 1) +
+                                " have several widths and are not read");
     if (form_.layout.only_header == layout.only_header) return;
     kinds_ = "of rows of several kinds are read those of --only " +
              shell_word(form_.layout.only_header + "=" + form_.layout.only_value);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -219,23 +220,21 @@ void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   grid = Grid(lines, grid.separator());
 }
 
-// In a log whose lines have several widths, keeps the kind of the widest table's rows: a text in one of their columns
-// that others have not. False: there is none.
+// In a log whose lines have several widths and a text that names their kind, keeps the most frequent kind of those as wide
+// as the table. False: there is none.
 bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
-  const std::vector<std::string>& first = grid.rows()[*grid.first()].cells;
-  for (std::size_t place = 0; place < first.size(); ++place) {
-    const auto is_text = [&](const std::string& cell) {
-      return !cell.empty() && !is_value(cell, grid.separator());
+  for (std::size_t place = 0; place < grid.width(); ++place) {
+    std::map<std::string, std::ptrdiff_t> kinds;  // rows as wide as the table, minus others
+    for (const Row& row : grid.rows())
+      if (row.is_row() && place < row.cells.size())
+        kinds[row.cells[place]] += row.is_as_wide(grid.width()) ? 1 : -1;
+    const auto is_text = [&](const auto& kind) {
+      return !kind.first.empty() && !is_value(kind.first, grid.separator());
     };
-    bool alike = is_text(first[place]), others = false;
-    for (const Row& row : grid.rows()) {
-      if (!row.is_row() || row.cells.size() <= place || row.cells[place] == first[place]) continue;
-      alike = alike && !row.is_as_wide(first.size());
-      others = others || is_text(row.cells[place]);
-    }
-    if (!alike || !others) continue;
+    const auto [least, most] = std::ranges::minmax_element(kinds, {}, &decltype(kinds)::value_type::second);
+    if (least->second >= 0 || most->second <= 0 || !std::ranges::all_of(kinds, is_text)) continue;
     layout.only_header = "#" + std::to_string(place + 1);
-    layout.only_value = first[place];
+    layout.only_value = most->first;
     keep_kind(layout, lines, grid);
     return true;
   }
@@ -324,8 +323,6 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
       sample.names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
-    for (std::size_t i = 0; given.empty() && i < *grid.first(); ++i)
-      form.rows_above += grid.rows()[i].is_row() && grid.rows()[i].is_as_wide(grid.width()) ? 1 : 0;
     sample_rows(grid, *grid.first(), sample);
     if (const Row* const above = *grid.first() > 0 ? &grid.rows()[*grid.first() - 1] : nullptr;
         above != nullptr && !above->comment && above->values == 0 && above->cells.size() > 1) {
@@ -338,10 +335,14 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
             "line is " +
                 in_quotes(plain->text));
   }
-  for (const Line& line : lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = lines[i];
+    const Row& row = grid.rows()[i];
     if (line.number > form.last_line || (headed && line.number == form.header_line)) break;
-    sample.comments.emplace_back(is_comment(line.text) ? trimmed(trimmed(line.text).substr(1))
-                                                       : trimmed(line.text));
+    if (!headed && !row.comment && row.values == row.cells.size())
+      ++form.rows_above;
+    else
+      sample.comments.emplace_back(row.comment ? trimmed(trimmed(line.text).substr(1)) : trimmed(line.text));
   }
   return form;
 }
