@@ -27,11 +27,6 @@ bool speaks_of_increment(const Words& words) {
          (words.have(Role::step) && words.have(Role::angle));
 }
 
-// An angle, whose differences are the rate.
-bool speaks_of_angle(const Words& words) {
-  return words.have(Role::angle) && !words.have(Role::speed) && !speaks_of_increment(words);
-}
-
 bool speaks_of_rate(const Words& words) {
   return words.have(Role::rate) || (words.have(Role::speed) && words.have(Role::turn)) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
@@ -64,11 +59,11 @@ void set_unit(RateCandidate& rate, const Words& words, const std::string& unit) 
 std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit, bool angles) {
   if (words.have(Role::no_rate)) return std::nullopt;
   const bool rate = angle_unit(unit, true, false).has_value(),
-             angle = angle_unit(unit, false, false).has_value(), turned = speaks_of_angle(words) && !rate,
-             gyro = speaks_of_rate(words);
+             angle = angle_unit(unit, false, false).has_value(), gyro = speaks_of_rate(words);
   if (!unit.empty() && !rate && !angle) return std::nullopt;
   RateCandidate found{
       .axis = words.axis, .reference = words.have(Role::truth), .increment = speaks_of_increment(words)};
+  const bool turned = angle && words.have(Role::angle) && !words.have(Role::speed) && !found.increment;
   if (angles) {
     if (!angle || (!turned && !(words.has("turn") && words.axis == "z"))) return std::nullopt;
     if (turned && (gyro || found.reference))
@@ -79,7 +74,7 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
   }
   const bool likely = !words.axis.empty() || found.reference || words.has("rate") || words.size() == 0;
   if (!gyro && !found.increment && !(rate && likely)) return std::nullopt;
-  if (turned && angle) return std::nullopt;
+  if (turned) return std::nullopt;
   set_unit(found, words, unit);
   return found;
 }

@@ -234,8 +234,8 @@ class Chooser {
              : ""));
   }
 
-  // Names columns of numbers that are not read, except times and counts of the rows, and how a rate that was commanded
-  // is read as the true one.
+  // Names columns of numbers that are not read, except times and counts of the rows, and how one of them is read that a
+  // rate table was commanded, or that names no axis.
   void tell_not_read(const TableReading& reading) {
     const TableSample& sample = form_.sample;
     std::vector<std::string> left;
@@ -247,14 +247,15 @@ class Chooser {
       const Words words(names_[i]);
       const bool is_time = header == reading.layout.time.value_or(CsvTime{}).header ||
                            time_unit(sample.unit_of(i)) || words.have(Role::no_time) ||
-                           (words.have(Role::time) && names_[i] != "T");
+                           (words.have(Role::time) && names_[i] != "T");  // a temperature
       if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == counting_column(sample))
         continue;
       left.push_back(header);
-      if (!words.have(Role::wanted) || !angle_unit(sample.unit_of(i), true, false)) continue;
+      if (!(words.have(Role::wanted) || words.have(Role::truth)) ||
+          !angle_unit(sample.unit_of(i), true, false))
+        continue;
       const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
-      rate = "; if the rate was as commanded: " + reading.options + " " +
-             option_for(reference, sample.unit_of(i));
+      rate = "; as the true rate: " + reading.options + " " + option_for(reference, sample.unit_of(i));
     }
     const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;
     left.resize(named);

@@ -76,7 +76,7 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
                "0.{i},0,{x},40,3,25,298"),
        {"rate 'Gyro output (deg/s)' in deg/s, humidity 'Humidity [%]' in %, temp 'Temp (degC)' in degC, "
         "temp_7 'Temp [K]' in K\n",
-        "not read: 'Commanded rate (deg/s)', 'Lamp'; if the rate was as commanded: --time 'Time (s):s' "
+        "not read: 'Commanded rate (deg/s)', 'Lamp'; as the true rate: --time 'Time (s):s' "
         "--column "
         "'rate_radps=Gyro output (deg/s):deg/s'",
         "--column 'reference_rate_radps=Commanded rate (deg/s):deg/s'"}},
