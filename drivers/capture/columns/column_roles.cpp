@@ -188,11 +188,12 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
         add(capture_name(column), column.place, column.unit);
   }
   for (std::size_t i = 0; i < table.names.size(); ++i) {
-    // Two of one name and quantity have the columns' numbers.
     Words words(table.names[i]);
-    const auto is_taken = [&](const CsvColumn& c) { return c.name == channel_name(words, table.unit_of(i)); };
-    if (std::ranges::any_of(columns, is_taken)) words.text += "_" + std::to_string(i + 1);
-    add(channel_name(words, table.unit_of(i)), i, table.unit_of(i));
+    const std::string unit = table.unit_of(i), name = channel_name(words, unit);
+    // Of two with one name and quantity the second has its column's number.
+    if (std::ranges::any_of(columns, [&](const CsvColumn& column) { return column.name == name; }))
+      words.text += "_" + std::to_string(i + 1);
+    add(channel_name(words, unit), i, unit);
   }
 }
 

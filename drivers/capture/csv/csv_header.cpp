@@ -238,6 +238,7 @@ class Chooser {
   // rate table was commanded, or that names no axis.
   void tell_not_read(const TableReading& reading) {
     const TableSample& sample = form_.sample;
+    const std::string count = counting_column(sample);
     std::vector<std::string> left;
     std::string rate;
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -248,8 +249,7 @@ class Chooser {
       const bool is_time = header == reading.layout.time.value_or(CsvTime{}).header ||
                            time_unit(sample.unit_of(i)) || words.have(Role::no_time) ||
                            (words.have(Role::time) && names_[i] != "T");  // a temperature
-      if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == counting_column(sample))
-        continue;
+      if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == count) continue;
       left.push_back(header);
       if (!(words.have(Role::wanted) || words.have(Role::truth)) ||
           !angle_unit(sample.unit_of(i), true, false))
