@@ -131,24 +131,7 @@ std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<
 [[nodiscard]] std::string lower(std::string text);
 
 // Roles of a word in a column name; see column_words.cpp.
-enum class Role {
-  rate,
-  speed,
-  turn,
-  glued,
-  no_rate,
-  wanted,
-  truth,
-  step,
-  angle,
-  time,
-  no_time,
-  ms,
-  us,
-  ns,
-  s,
-  one
-};
+enum class Role { rate, speed, turn, glued, no_rate, truth, step, angle, time, no_time, ms, us, ns, s, one };
 [[nodiscard]] bool says(std::string_view word, Role role);
 
 // Parsed column name: "w_RS_S_x [rad s^-1]" has the words w, rs and s and the axis x.

@@ -13,10 +13,10 @@
 namespace ifog {
 namespace {
 
-// Words of each role, separated by blanks. speed: a rate if with a turning word. wanted: what commands a rate table. glued: may be joined with an
+// Words of each role, separated by blanks. speed: a rate if with a turning word. glued: may be joined with an
 // axis (xgyro, wx). step: before an angle, the turn within a sample. no_time: belongs to a time, but not that
 // of the rows. one: numbers or names one of several sensors.
-constexpr std::array<std::pair<Role, std::string_view>, 16> kWords{{
+constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::rate,
      " gyro gyr gyros gyroscope gyroskop drehrate omega angvel angrate angularvelocity angularrate "
      "rotationrate "
@@ -33,8 +33,9 @@ constexpr std::array<std::pair<Role, std::string_view>, 16> kWords{{
      "error residual limit threshold gain timestamp tmp sts period relative sample sampling update frame "
      "odr integral accel acc acceleration accelerometer mag magnetometer denoised compensated innovation "
      "command commanded cmd setpoint desired target drift "},
-    {Role::wanted, " command commanded cmd setpoint desired target "},
-    {Role::truth, " reference ref truth true groundtruth gt table turntable ratetable encoder "},
+    {Role::truth,
+     " reference ref truth true groundtruth gt table turntable ratetable encoder "
+     "command commanded cmd setpoint desired target "},
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang heading winkel integrated cumulative "},
     {Role::time,

@@ -24,7 +24,6 @@ bool holds_gravity(const TableSample& table, const Rates& axes) {
 // squared difference / variance; 2 for white noise.
 bool is_smooth(const std::vector<std::string>& cells) {
   constexpr double kSmooth = 0.5;
-  constexpr std::size_t kFewRows = 8;
   const std::vector<double> values = numbers_in(cells);
   if (values.size() < kFewRows) return false;
   double mean = 0.0, around = 0.0, differences = 0.0;

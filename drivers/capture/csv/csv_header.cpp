@@ -251,9 +251,7 @@ class Chooser {
                            (words.have(Role::time) && names_[i] != "T");  // a temperature
       if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == count) continue;
       left.push_back(header);
-      if (!(words.have(Role::wanted) || words.have(Role::truth)) ||
-          !angle_unit(sample.unit_of(i), true, false))
-        continue;
+      if (!words.have(Role::truth) || !angle_unit(sample.unit_of(i), true, false)) continue;
       const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
       rate = "; as the true rate: " + reading.options + " " + option_for(reference, sample.unit_of(i));
     }
