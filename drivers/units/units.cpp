@@ -100,6 +100,7 @@ constexpr std::array kSpellings{
     Spelling{"\xD0\xB3\xD1\x80\xD0\xB0\xD0\xB4", "deg"},  // град
     Spelling{"\xD1\x80\xD0\xB0\xD0\xB4", "rad"},          // рад
     Spelling{"\xD1\x81", "s"},                            // с
+    Spelling{"\xD1\x87", "h"},                            // ч
     Spelling{"\xE3\xF0\xE0\xE4", "deg"},                  // the three above in Windows-1251
     Spelling{"\xF0\xE0\xE4", "rad"},
     Spelling{"\xF1", "s"},
@@ -217,9 +218,10 @@ constexpr std::array kTemperatures{QuantityUnit{"degc", 1.0, kZeroCelsius_K},
                                    QuantityUnit{"kelvin", 1.0}};
 constexpr std::array kAccelerations{QuantityUnit{"mps2", 1.0},           QuantityUnit{"m/s2", 1.0},
                                     QuantityUnit{"m/s^2", 1.0},          QuantityUnit{"m/s\xC2\xB2", 1.0},
-                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"g", kGravity},
-                                    QuantityUnit{"mg", kGravity * 1e-3}, QuantityUnit{"ug", kGravity * 1e-6},
-                                    QuantityUnit{"gal", 1e-2},           QuantityUnit{"mgal", 1e-5}};
+                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"m s^-2", 1.0},
+                                    QuantityUnit{"g", kGravity},         QuantityUnit{"mg", kGravity * 1e-3},
+                                    QuantityUnit{"ug", kGravity * 1e-6}, QuantityUnit{"gal", 1e-2},
+                                    QuantityUnit{"mgal", 1e-5}};
 constexpr std::array kVoltages{QuantityUnit{"v", 1.0}, QuantityUnit{"mv", 1e-3}, QuantityUnit{"uv", 1e-6},
                                QuantityUnit{"kv", 1e3}};
 constexpr std::array kCurrents{QuantityUnit{"a", 1.0}, QuantityUnit{"ma", 1e-3}, QuantityUnit{"ua", 1e-6}};
@@ -229,12 +231,16 @@ constexpr std::array kFluxDensities{QuantityUnit{"t", 1.0},      QuantityUnit{"m
 constexpr std::array kPressures{QuantityUnit{"pa", 1.0}, QuantityUnit{"hpa", 1e2}, QuantityUnit{"kpa", 1e3},
                                 QuantityUnit{"mbar", 1e2}, QuantityUnit{"bar", 1e5}};
 
+constexpr std::array kRatios{QuantityUnit{"pct", 1.0}, QuantityUnit{"%", 1.0}, QuantityUnit{"percent", 1.0},
+                             QuantityUnit{"%rh", 1.0}};
+
 constexpr std::array kQuantities{Quantity{"degC, degF, K", kTemperatures},
                                  Quantity{"mps2, g, mg, Gal", kAccelerations},
                                  Quantity{"V, mV, uV", kVoltages},
                                  Quantity{"A, mA, uA", kCurrents},
                                  Quantity{"uT, nT, mT, gauss", kFluxDensities},
-                                 Quantity{"Pa, hPa, kPa, mbar, bar", kPressures}};
+                                 Quantity{"Pa, hPa, kPa, mbar, bar", kPressures},
+                                 Quantity{"pct, %", kRatios}};
 
 const QuantityUnit* find_in(const Quantity& quantity, std::string_view name) {
   for (const QuantityUnit& unit : quantity.units)

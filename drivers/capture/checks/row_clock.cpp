@@ -20,11 +20,12 @@ struct Rollover {
   double length_s;
   const char* what;
 };
-constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
+constexpr std::array<Rollover, 6> kRollovers{{{604'800.0, "a GPS week"},
                                               {86'400.0, "a day"},
                                               {0x1p32 * 1e-6, "a count of µs in 32 bits"},
                                               {0x1p32 * 1e-4, "a count of 100 µs in 32 bits"},
-                                              {0x1p32 * 1e-3, "a count of ms in 32 bits"}}};
+                                              {0x1p32 * 1e-3, "a count of ms in 32 bits"},
+                                              {0x1p16 * 1e-3, "a count of ms in 16 bits"}}};
 
 constexpr std::size_t kFewBursts = 8, kLateBursts = 16, kLateRows = 128;
 // No packet has as many rows; a logger that records for some seconds now and then has them, at even times.
@@ -105,7 +106,8 @@ RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
 
 double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   const auto found = std::ranges::find_if(kRollovers, [&](const Rollover& each) {
-    return now_s + each.length_s > last_s_ && now_s + each.length_s <= last_s_ + kLate_s;
+    return last_s_ - offset_s_ < each.length_s && now_s + each.length_s > last_s_ &&
+           now_s + each.length_s <= last_s_ + kLate_s;
   });
   if (found == kRollovers.end()) return 0.0;
   notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +

@@ -2,6 +2,7 @@
 #include "drivers/capture/columns/column_roles.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 #include <utility>
@@ -29,37 +30,52 @@ bool speaks_of_increment(const Words& words) {
 bool speaks_of_rate(const Words& words) {
   return words.have(Role::rate) || (words.have(Role::speed) && words.have(Role::turn)) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
-         // wz; w_RS_S_x of kalibr; gx, g_x, IMU_gx.
-         (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1) ||
-                                  words.text.ends_with("_g" + words.axis)));
+         // wz; w_RS_S_x of kalibr; gx, gx2, g_x, IMU_gx.
+         (!words.axis.empty() &&
+          (words.first() == "w" ||
+           (words.first() == "g" &&
+            (words.size() == 1 || std::isdigit(static_cast<unsigned char>(words.words[1][0])) != 0)) ||
+           words.text.ends_with("_g" + words.axis)));
 }
 
-// Unit of a rate by name or convention: "rad" of a gyro means rad/s.
-std::string rate_unit(const Words& words, const std::string& unit) {
-  const bool increment = speaks_of_increment(words);
+// Sets the unit of a rate by name or convention, or the possible ones: a bare unit of angle leaves open of what it is.
+void set_unit(RateCandidate& rate, const Words& words, const std::string& unit) {
   if (unit.empty()) {
     // sensor_msgs/Imu of ROS: rad/s; vehicle_imu of PX4: rad per sample.
-    if (words.has("angular") && words.has("velocity")) return "rad/s";
-    return increment && words.has("delta") && words.has("angle") ? "rad/sample" : "";
+    if (words.has("angular") && words.has("velocity")) rate.unit = "rad/s";
+    if (rate.increment && words.has("delta") && words.has("angle")) rate.unit = "rad/sample";
+  } else if (angle_unit(unit, true, false)) {
+    rate.unit = unit;
+  } else if (rate.increment) {
+    rate.unit = unit + "/sample";
+  } else if (words.text == "gyro_rad" && !words.axis.empty()) {  // sensor_combined of PX4
+    rate.unit = "rad/s";
+  } else {
+    rate.units = {unit + "/s", unit, unit + "/sample"};
   }
-  if (angle_unit(unit, true, false)) return unit;
-  if (increment) return unit + "/sample";
-  return unit + "/s";
 }
 
-// A rate column without its place, or nullopt.
-std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit) {
+// A rate column without its place, or nullopt. angles: one that is named as an angle instead.
+std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit, bool angles) {
   if (words.have(Role::no_rate)) return std::nullopt;
   const bool rate = angle_unit(unit, true, false).has_value(),
-             angle = angle_unit(unit, false, false).has_value();
+             angle = angle_unit(unit, false, false).has_value(), gyro = speaks_of_rate(words);
   if (!unit.empty() && !rate && !angle) return std::nullopt;
-  const bool named = speaks_of_rate(words) || speaks_of_increment(words);
-  if (!named && !(rate && (!words.axis.empty() || words.have(Role::truth)))) return std::nullopt;
-  RateCandidate found;
-  found.unit = rate_unit(words, unit);
-  found.axis = words.axis;
-  found.reference = words.have(Role::truth);
-  found.increment = speaks_of_increment(words);
+  RateCandidate found{
+      .axis = words.axis, .reference = words.have(Role::truth), .increment = speaks_of_increment(words)};
+  const bool turned = angle && words.have(Role::angle) && !words.have(Role::speed) && !found.increment;
+  if (angles) {
+    if (!angle || (!turned && !(words.has("turn") && words.axis == "z"))) return std::nullopt;
+    if (turned && (gyro || found.reference))
+      found.unit = unit;
+    else
+      found.units = {unit, unit + "/s", unit + "/sample"};
+    return found;
+  }
+  const bool likely = !words.axis.empty() || found.reference || words.has("rate") || words.size() == 0;
+  if (!gyro && !found.increment && !(rate && likely)) return std::nullopt;
+  if (turned) return std::nullopt;
+  set_unit(found, words, unit);
   return found;
 }
 
@@ -74,9 +90,10 @@ void add_triple(const TableSample& table, Sensors& sensors) {
     const std::string unit = table.unit_of(i);
     attitude = attitude || words.text == "w" || words.text == "qw" || words.text == "q_w";
     if (words.text.size() == 1 && words.text >= "p" && words.text <= "r" &&
-        (unit.empty() || angle_unit(unit, true, true)))
-      body.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
-                      std::string(1, static_cast<char>('x' + (words.text[0] - 'p')))});
+        (unit.empty() || angle_unit(unit, true, true))) {
+      body.push_back({i, "", std::string(1, static_cast<char>('x' + (words.text[0] - 'p')))});
+      set_unit(body.back(), words, unit);
+    }
     const bool nameless = words.size() == 0 || words.text == "xyz";  // "xyz[0]" of PX4
     if (nameless && !words.axis.empty() && unit.empty()) bare.push_back({i, "", words.axis});
   }
@@ -86,11 +103,12 @@ void add_triple(const TableSample& table, Sensors& sensors) {
     sensors["x y z"] = bare;
 }
 
-Sensors sensors_of(const TableSample& table, bool references) {
+// angles: columns that are named as angles, which are used where no rate is.
+Sensors sensors_of(const TableSample& table, bool references, bool angles = false) {
   Sensors sensors;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
-    auto found = candidate_of(words, table.unit_of(i));
+    auto found = candidate_of(words, table.unit_of(i), angles);
     if (!found || found->reference != references || is_empty(table.cells[i])) continue;
     found->place = i;
     if (words.has("minus")) found->scale = -1.0;
@@ -104,7 +122,7 @@ Sensors sensors_of(const TableSample& table, bool references) {
         }))
       for (std::size_t i = 0; i < 3; ++i) columns[i].axis = std::string(1, static_cast<char>('x' + i));
   if (!references) add_triple(table, sensors);
-  return sensors;
+  return sensors.empty() && !angles ? sensors_of(table, references, true) : sensors;
 }
 
 bool axes_differ(const std::vector<RateCandidate>& columns) {
@@ -161,13 +179,22 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
     const auto listed = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
     if (!name.empty() && std::ranges::none_of(columns, listed)) columns.push_back({name, header, unit});
   };
-  for (const auto& choice : choices_of(sensors_of(table, true)))
+  for (auto& choice : choices_of(sensors_of(table, true))) {
+    // A table that turns a sensor of one axis.
+    if (choice.size() == 1 && rates.size() == 1) choice[0].axis = rates[0].axis;
     for (const RateCandidate& column : choice)
       if (!column.unit.empty() &&
           std::ranges::any_of(rates, [&](const RateCandidate& r) { return r.axis == column.axis; }))
         add(capture_name(column), column.place, column.unit);
-  for (std::size_t i = 0; i < table.names.size(); ++i)
-    add(channel_name(Words(table.names[i]), table.unit_of(i)), i, table.unit_of(i));
+  }
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    Words words(table.names[i]);
+    const std::string unit = table.unit_of(i), name = channel_name(words, unit);
+    // Of two with one name and quantity the second has its column's number.
+    if (std::ranges::any_of(columns, [&](const CsvColumn& column) { return column.name == name; }))
+      words.text += "_" + std::to_string(i + 1);
+    add(channel_name(words, unit), i, unit);
+  }
 }
 
 TableReading reading_by(const TableSample& table, const CsvLayout& asked, const std::optional<CsvTime>& time,
@@ -198,8 +225,8 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
   const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
   // Limits the line; the user can ask for more columns.
-  if (way.layout.columns.size() > kMostShown) way.layout.columns.resize(rates_only);
-  for (const CsvColumn& column : way.layout.columns) add(option_for(column, column.unit));
+  const std::size_t shown = way.layout.columns.size() > kMostShown ? rates_only : way.layout.columns.size();
+  for (std::size_t i = 0; i < shown; ++i) add(option_for(way.layout.columns[i], way.layout.columns[i].unit));
   return way;
 }
 
@@ -252,8 +279,9 @@ std::string TableSample::unit_of(std::size_t place) const {
   if (const std::string given = stated_unit(place); !given.empty()) return typed(given);
   const std::string& text = Words(names[place]).text;  // gyro_rad[0]
   if (const std::string unit = unit_in_name(names[place]); !unit.empty())
-    return unit == "G" && text.starts_with("mag") ? "gauss"
-                                                  : typed(unit);  // a magnetometer's G is gauss, not gravity
+    // A magnetometer's G is gauss, not gravity.
+    return text.starts_with("mag") && (unit == "G" || unit == "mG") ? (unit == "G" ? "gauss" : "mgauss")
+                                                                    : typed(unit);
   const std::string last = text.substr(text.rfind('_') + 1);
   return angle_unit(last, false, false) ? last : "";
 }
@@ -299,16 +327,22 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   out.ways.front().clear = out.ways.front().clear && out.other_units.empty();
   if (time_columns == 0 && !any_time) {
     const std::string counted = counting_column(table);
-    out.why =
-        counted.empty() ? "no time column" : "no time column, " + in_quotes(counted) + " counts the rows";
+    out.why = counted.empty()
+                  ? "no time column"
+                  : "no time column, " + in_quotes(counted) +
+                        " counts the rows (if it also counts lost ones, " +
+                        option_for(CsvTime{counted, "10ms"}) + " with the true period finds them)";
   } else if (out.ways.size() > 1) {
     out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
   } else if (!out.other_units.empty()) {
     out.why = "the unit of the " + std::string(time_units.empty() ? "rate" : "time") + " is not named";
+    if (const RateCandidate& rate = sensors[0][0]; time_units.empty() && !rate.units.empty())
+      out.why = in_quotes(table.header_of(rate.place)) +
+                " has a unit of angle, as a rate, an angle or the turn in each sample may";
   }
   if (counts)
     out.why += "; whole numbers are often counts, whose scale is in the sensor's manual: --column " +
-               shell_word("rate_x_radps=" + table.header_of(sensors[0].back().place) +
+               shell_word(capture_name(sensors[0].back()) + "=" + table.header_of(sensors[0].back().place) +
                           (sensors[0].back().increment ? ":1e-9rad/sample" : ":0.005deg/s"));
   return out;
 }
@@ -344,11 +378,12 @@ std::string in_words(const CsvLayout& layout) {
   if (layout.sample_rate_hz) text = "rows " + shortest(*layout.sample_rate_hz) + " Hz apart";
   if (layout.time)
     text = "time " + in_quotes(layout.time->header) + " in " +
-           (layout.time->unit.empty() ? "s" : printable(layout.time->unit));
+           (layout.time->unit.empty() ? "s" : printable(layout.time->unit)) + layout.time->remark;
   for (const CsvColumn& column : layout.columns) {
     text += (text.empty() ? "" : ", ") + column.name.substr(0, column.name.rfind('_')) + " " +
             in_quotes(column.header) + " in " + (column.scale == 1.0 ? "" : shortest(column.scale) + " ") +
             printable(column.unit.empty() ? column.own_unit() : column.unit);
+    if (column.angle_rad() && !column.unit.ends_with("/sample")) text += " (an angle, by its differences)";
   }
   return text;
 }

@@ -65,11 +65,12 @@ std::string typed(const std::string& unit);
 // A column that counts rows ("Sample No.") and is no time, or "".
 std::string counting_column(const TableSample& table);
 
+inline constexpr std::size_t kFewRows = 8;  // too few to judge a column
+
 // True for numbers that are not all equal.
 bool varies(const std::vector<std::string>& cells);
-// True if values change little from row to row compared with their range, like an angle and unlike white
-// noise.
-bool is_smooth(const std::vector<std::string>& cells);
+// The finite numbers among the cells.
+std::vector<double> numbers_in(const std::vector<std::string>& cells);
 // True for integers with several values.
 bool is_whole(const std::vector<std::string>& cells);
 
@@ -95,9 +96,10 @@ CsvColumn stated_scale(const std::vector<std::string>& comments);
 // A possible rate column.
 struct RateCandidate {
   std::size_t place = 0;
-  std::string unit;  // "" if unknown
+  std::string unit{};  // "" if unknown
   std::string axis;
-  double scale = 1.0;  // of counts
+  std::vector<std::string> units{};  // possible ones, most likely first, if its name leaves some
+  double scale = 1.0;                // of counts
   bool reference = false, increment = false;
 };
 
@@ -108,6 +110,8 @@ std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates);
 
 // True if all cells are empty.
 bool is_empty(const std::vector<std::string>& cells);
+// True if some cells are numbers, and the others are empty.
+bool are_numbers(const std::vector<std::string>& cells);
 
 // True if three columns together have the length of gravity, i.e. are an accelerometer at rest: in m/s², g,
 // mg or 16-bit counts with a range of 2, 4, 8 or 16 g.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -21,7 +22,6 @@ namespace ifog {
 namespace {
 
 constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // range of logged gyros' sample rates
-constexpr std::size_t kFewRows = 8;                          // too few to judge a column
 
 // Number after one of these names in a line above the table.
 std::optional<double> stated(const std::vector<std::string>& comments,
@@ -50,21 +50,16 @@ std::vector<std::string> filled(const std::vector<std::string>& cells) {
   return out;
 }
 
-std::vector<double> numbers_in(const std::vector<std::string>& cells) {
-  std::vector<double> values;
-  for (const std::string& cell : cells)
-    if (const auto value = finite_number(cell)) values.push_back(*value);
-  return values;
-}
-
-// True if values increase, except for one or two rollovers, at least once in `each` steps.
-bool goes_on(const std::vector<double>& values, std::size_t each) {
+// True if values increase at least once in `each` steps, and hardly ever decrease. A named time may decrease more often, as where
+// a log is not in order: its rows are checked one by one.
+bool goes_on(const std::vector<double>& values, std::size_t each, bool named) {
   std::size_t back = 0, on = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] < values[i - 1]) ++back;
     if (values[i] > values[i - 1]) ++on;
   }
-  return values.size() < 2 || (on > 0 && each * on >= values.size() - 1 && back <= 1);
+  return values.size() < 2 ||
+         (on > 0 && each * on >= values.size() - 1 && (back <= 1 || (named && 2 * back < on)));
 }
 
 bool counts(const std::vector<double>& values) {
@@ -74,17 +69,6 @@ bool counts(const std::vector<double>& values) {
     if (values[i] - values[i - 1] != 1.0) ++other;
   return other <= 1 && std::ranges::all_of(values, [](double v) { return v == std::floor(v); });
 }
-
-struct UnitOfTime {
-  std::string_view name;
-  double s, since_1970;  // seconds per unit; value for the year 2000, in seconds since 1970
-};
-// Days are counted from other years; see their rate.
-constexpr std::array<UnitOfTime, 5> kTimeUnits{{{"s", 1.0, 9.4e8},
-                                                {"ms", 1e-3, 9.4e11},
-                                                {"us", 1e-6, 9.4e14},
-                                                {"ns", 1e-9, 9.4e17},
-                                                {"d", 86'400.0, 1e99}}};
 
 // Unit in which the rows have the stated rate; "" if there is none.
 std::string unit_by_stated_rate(const TableSample& table, double step) {
@@ -102,21 +86,38 @@ double mean_step(const std::vector<double>& values) {
   return forward / static_cast<double>(values.size() - 1);
 }
 
-// Unit in which the values are times since 1970, or the only one with a plausible sample rate.
-std::string unit_by_values(const std::vector<double>& values) {
-  if (values.size() < 2) return "";
+// Sets the unit in which the values are times since 1970, or the only one with a plausible sample rate. The remark names
+// another one in which the rows are as far apart as those of a slow log.
+void guess_unit(CsvTime& time, const std::vector<double>& values) {
+  if (values.size() < 2) return;
   const double step = mean_step(values);
-  std::string found;
-  for (const UnitOfTime& unit : kTimeUnits) {
-    const double rate_hz = 1.0 / (step * unit.s);
-    if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
-        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz)
-      return std::string(unit.name);
+  for (const char* unit : {"s", "ms", "us", "ns", "d"}) {
+    const double unit_s = CsvTime{"", unit}.unit_s(), rate_hz = 1.0 / (step * unit_s);
+    // From the year 2000 on; days are counted from other years.
+    const double since = values.front() * unit_s / 9.4e8;
+    if (unit_s <= 1.0 && since >= 1.0 && since < 5.0 && rate_hz > 1e-2 * kSlowest_hz &&
+        rate_hz < 10.0 * kFastest_hz) {
+      time.unit = unit;
+      return;
+    }
     if (!(rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz)) continue;
-    if (!found.empty()) return "";
-    found = unit.name;
+    if (!time.unit.empty()) return time.unit.clear();
+    time.unit = unit;
   }
-  return found;
+  if (time.unit.empty()) return;
+  std::ostringstream remark;
+  remark.precision(4);
+  remark << " (not named; gives " << 1.0 / (step * time.unit_s()) << " Hz";
+  for (const char* unit : {"s", "ms", "min", "h", "d"}) {
+    const double period_s = step * CsvTime{"", unit}.unit_s();
+    const auto near = [=](double slow_s) { return std::abs(period_s - slow_s) < 1e-3 * slow_s; };
+    if (unit == time.unit || std::ranges::none_of(std::array{1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0}, near))
+      continue;
+    remark << "; " << 1.0 / period_s << " Hz if it is in " << unit << ": "
+           << option_for(CsvTime{time.header, unit});
+    break;
+  }
+  time.remark = remark.str() + ")";
 }
 
 // Likelihood from its name that a column is the rows' time; 0: none.
@@ -191,10 +192,10 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   CsvTime out{table.header_of(place), dated ? "s" : time_unit_by_name(table, place, words)};
   // Several rows may have one stamp; without a name a quantity that hardly changes is no time.
   const std::size_t each = table.named ? cells.size() : kFewRows;
-  if (!dated &&
-      (values.size() != cells.size() || !goes_on(values, each) || (out.unit.empty() && counts(values))))
+  if (!dated && (values.size() != cells.size() || !goes_on(values, each, table.named) ||
+                 (out.unit.empty() && counts(values))))
     return std::nullopt;
-  if (out.unit.empty()) out.unit = unit_by_values(values);
+  if (out.unit.empty()) guess_unit(out, values);
   return out;
 }
 
@@ -265,7 +266,19 @@ double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) 
 
 }  // namespace
 
+std::vector<double> numbers_in(const std::vector<std::string>& cells) {
+  std::vector<double> values;
+  for (const std::string& cell : cells)
+    if (const auto value = finite_number(cell)) values.push_back(*value);
+  return values;
+}
+
 bool is_empty(const std::vector<std::string>& cells) { return !cells.empty() && filled(cells).empty(); }
+
+bool are_numbers(const std::vector<std::string>& cells) {
+  const std::size_t numbers = numbers_in(cells).size();
+  return numbers > 0 && numbers == filled(cells).size();
+}
 
 std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates) {
   std::vector<CsvTime> best;
@@ -314,20 +327,6 @@ bool varies(const std::vector<std::string>& cells) {
          (values.size() < 2 || std::ranges::any_of(values, [&](double v) { return v != values[0]; }));
 }
 
-// Von Neumann's ratio: mean squared difference / variance; 2 for white noise.
-bool is_smooth(const std::vector<std::string>& cells) {
-  constexpr double kSmooth = 0.5;
-  const std::vector<double> values = numbers_in(cells);
-  if (values.size() < kFewRows) return false;
-  double mean = 0.0, around = 0.0, differences = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    around += (values[i] - mean) * (values[i] - mean);
-    if (i > 0) differences += (values[i] - values[i - 1]) * (values[i] - values[i - 1]);
-  }
-  return differences < kSmooth * around;
-}
-
 bool is_whole(const std::vector<std::string>& cells) {
   const std::vector<double> values = numbers_in(cells);
   return values.size() >= kFewRows && varies(cells) &&
@@ -344,23 +343,17 @@ int digits_of_second(const std::string& name, const std::vector<std::string>& ce
 }
 
 std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time) {
-  constexpr std::size_t kFew = 10;
   const std::vector<std::string> cells = filled(table.cells[place]);
   const std::vector<double> values = numbers_in(cells);
-  if (values.size() < std::max(kFew, cells.size()) || time.unit_s() != 1.0 ||
+  if (values.size() < std::max(kFewRows, cells.size()) || time.unit_s() != 1.0 ||
       !std::ranges::all_of(values, [](double t) { return t == std::floor(t); }))
     return "";
-  const bool unit_known =
-      time_unit(table.stated_unit(place)).has_value() || cells[0].find('.') != std::string::npos;
   const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
-  const std::string name = printable(time.header);
-  if (step == 1.0 && (time.header != "time_s" || !unit_known))
-    return name +
-           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
-           "count: --sample-rate HZ";
-  if (unit_known || !time.unit.empty()) return "";
-  return name + " is whole numbers, " + shortest(step) +
-         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
+  const bool decimals = cells[0].find('.') != std::string::npos;
+  if (decimals || (step != 1.0 && (!time.unit.empty() || time_unit(table.stated_unit(place))))) return "";
+  return printable(time.header) + " is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms") +
+         (step == 1.0 ? "; if they count the rows: --sample-rate HZ" : "");
 }
 
 std::optional<DateOrder> date_order(const std::vector<std::string>& cells) {

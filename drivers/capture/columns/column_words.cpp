@@ -32,10 +32,12 @@ constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
      "state count counter num flag flags valid clip clipping quality scale sf min max mean avg rms err "
      "error residual limit threshold gain timestamp tmp sts period relative sample sampling update frame "
      "odr integral accel acc acceleration accelerometer mag magnetometer denoised compensated innovation "
-     "command cmd setpoint desired target drift "},
-    {Role::truth, " reference ref truth true groundtruth gt "},
+     "command commanded cmd setpoint desired target drift "},
+    {Role::truth,
+     " reference ref truth true groundtruth gt table turntable ratetable encoder "
+     "command commanded cmd setpoint desired target "},
     {Role::step, " delta inc increment "},
-    {Role::angle, " angle theta ang "},
+    {Role::angle, " angle theta ang heading winkel integrated cumulative "},
     {Role::time,
      " time timestamp stamp t utc datetime date zeit zeitstempel seconds elapsed tow sow sampletimefine "
      "timeusec secs "

@@ -24,8 +24,8 @@ constexpr std::string_view kRateUnit = "radps";
 constexpr std::string_view kPerSample = "/sample";
 
 // A single letter is a unit only after its quantity.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOneLetter = {
-    {{"KCF", "temp"}, {"VA", "supply"}, {"V", "volt"}, {"A", "current"}, {"g", "accel"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kOneLetter = {
+    {{"KCF", "temp"}, {"KCF", "_t_"}, {"VA", "supply"}, {"V", "volt"}, {"A", "current"}, {"g", "acc"}}};
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
   throw std::runtime_error(in_quotes(text) + ", expected " + expected);
@@ -70,6 +70,8 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   const std::string wanted = unit_of_name(out.name);
   if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
   if (wanted.empty() || out.header.empty()) refuse(text, form);
+  if (wanted == kRateUnit && !out.is_rate() && Words(out.name).have(Role::truth))
+    refuse(text, "the name reference_rate_radps, or reference_rate_x_radps of an axis, for a true rate");
   if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted)) return out;
   const std::string known = other_units(wanted);
   refuse(
@@ -135,7 +137,7 @@ std::string unit_in_name(const std::string& name) {
     return std::ranges::any_of(kOneLetter,
                                [&](const auto& each) {
                                  return each.first.find(last) != std::string_view::npos &&
-                                        header.find(each.second) != std::string::npos;
+                                        ("_" + lower(header)).find(each.second) != std::string::npos;
                                })
                ? last
                : "";
@@ -168,6 +170,7 @@ void CsvLayout::parse_only(const std::string& text) {
     refuse(text, "HEADER=VALUE, sensor_id=0");
   only_header = text.substr(0, equals);
   only_value = text.substr(equals + 1);
+  if (only_value == "*") only_value.clear();
 }
 
 bool is_number_of_column(const std::string& header) {

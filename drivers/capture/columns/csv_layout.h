@@ -36,6 +36,7 @@ struct CsvTime {
   // Unit, "ms" or "100us"; for dates like 5/6/2026 the order, "d/m/y" or "m/d/y"; "": seconds, or month
   // first.
   std::string unit;
+  std::string remark{};  // about a unit that no name states: " (not named; gives 100 Hz)"
 
   // Parses "t:ms", "t:100us", "t". Throws likewise.
   static CsvTime parse(const std::string& text);
@@ -49,13 +50,13 @@ struct CsvLayout {
   std::optional<CsvTime> time;           // nullopt: given by the file's names
   std::optional<double> sample_rate_hz;  // rows are equidistant, regardless of a time column
   char separator = '\0';  // '\0': detected; numbers may have a decimal comma if the separator is no comma
-  std::string only_header, only_value;  // only rows with this text in that column; "": all rows
+  std::string only_header, only_value;  // only rows with this text in that column; all if one is empty
   bool keep_repeats = false;            // rows that repeat the one before are kept
   bool other_rates = false;             // also read the sensor's other rates, as other_rate_y_radps
 
   // Parses one character, or a word: ";", "tab", … Throws likewise.
   static char parse_separator(const std::string& text);
-  // Parses "sensor_id=0". Throws likewise.
+  // Parses "sensor_id=0", or "sensor_id=*" for all rows. Throws likewise.
   void parse_only(const std::string& text);
   // True if columns or time were chosen; then the others are ignored.
   [[nodiscard]] bool chooses() const {

@@ -20,6 +20,21 @@ bool holds_gravity(const TableSample& table, const Rates& axes) {
          std::ranges::any_of(axes, [&](const RateCandidate& axis) { return is_gravity(table, {axis}); });
 }
 
+// True if values change little from row to row compared with their range, like an angle. Von Neumann's ratio: mean
+// squared difference / variance; 2 for white noise.
+bool is_smooth(const std::vector<std::string>& cells) {
+  constexpr double kSmooth = 0.5;
+  const std::vector<double> values = numbers_in(cells);
+  if (values.size() < kFewRows) return false;
+  double mean = 0.0, around = 0.0, differences = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    around += (values[i] - mean) * (values[i] - mean);
+    if (i > 0) differences += (values[i] - values[i - 1]) * (values[i] - values[i - 1]);
+  }
+  return differences < kSmooth * around;
+}
+
 bool are_neighbours(const Rates& axes) { return axes.back().place - axes.front().place + 1 == axes.size(); }
 
 }  // namespace
@@ -67,6 +82,7 @@ void keep_possible(std::vector<std::string>& units, const std::vector<std::strin
 
 // A rate in motion is as smooth as an angle, so only a lone column without a name is offered as an angle first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
+  if (!rates.front().units.empty()) return rates.front().units;
   std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
   const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
   if (rates.front().increment)

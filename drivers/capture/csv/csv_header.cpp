@@ -54,17 +54,26 @@ class Chooser {
         line_(!has_lines              ? 0
               : form_.header_line > 0 ? form_.header_line
                                       : form_.last_line + 1) {
-    header_.layout = layout;
+    header_.layout = form_.layout;
     header_.separator = form_.separator;
     header_.last_line = form_.last_line;
     for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
+    if (form_.rows_above > 0)
+      header_.notices.push_back(path_ + ": " + std::to_string(form_.rows_above) +
+                                " lines of numbers above line " + std::to_string(form_.last_line + 1) +
+                                " have several widths and are not read");
+    if (form_.layout.only_header == layout.only_header) return;
+    kinds_ = "of rows of several kinds are read those of --only " +
+             shell_word(form_.layout.only_header + "=" + form_.layout.only_value);
+    header_.notices.push_back(path_ + ": " + kinds_);
   }
 
   CsvHeader choose() {
     header_.cells = names_;
     if (header_.layout.only_header.empty()) look_what_alternates();
-    if (!header_.layout.only_header.empty()) keep_only(place(header_.layout.only_header));
+    if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
+    if (are_rates_of_several()) fail(kinds_);
     return std::move(header_);
   }
 
@@ -90,19 +99,34 @@ class Chooser {
       for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;
       const std::string gyro = reads_as_named() ? "" : the_gyro(values);
       if (values.size() < 2 || values.size() > 8 || (gyro.empty() && 2 * changes < cells.size())) continue;
-      const std::string said = path_ + ": " + in_quotes(names_[i]) + " is " +
-                               listed({values.begin(), values.end()}) + " in turn: ";
+      const std::string said =
+          in_quotes(names_[i]) + " is " + listed({values.begin(), values.end()}) + " in turn: ";
       const std::string& other = *values.begin() == gyro ? *values.rbegin() : *values.begin();
-      const std::string option = "--only " + shell_word(form_.sample.header_of(i) + "=" + other);
+      const auto option = [&](const std::string& value) {
+        return "--only " + shell_word(form_.sample.header_of(i) + "=" + value);
+      };
       if (gyro.empty()) {
-        header_.notices.push_back(said + "rows of several sensors; one of them: " + option);
+        kinds_ = said + "rows of several sensors; one of them: " + option(other) +
+                 "; all as of one: " + option("*");
+        names_sensor_ = i;
         continue;
       }
-      header_.notices.push_back(said + "only rows of " + in_quotes(gyro) + " are read; others: " + option);
+      header_.notices.push_back(path_ + ": " + said + "only rows of " + in_quotes(gyro) +
+                                " are read; others: " + option(other));
       header_.layout.only_header = form_.sample.header_of(i);
       header_.layout.only_value = gyro;
       return;
     }
+  }
+
+  // True if rates of more than one sensor stand below each other.
+  [[nodiscard]] bool are_rates_of_several() const {
+    std::set<std::string> sensors;
+    for (const FileColumn& column : header_.columns)
+      for (std::size_t row = 0; column.rate && row < form_.sample.cells[column.place].size(); ++row)
+        if (names_sensor_ && !form_.sample.cells[column.place][row].empty())
+          sensors.insert(form_.sample.cells[*names_sensor_][row]);
+    return sensors.size() > 1;
   }
 
   // Only the rows that are read are used as first rows.
@@ -196,17 +220,46 @@ class Chooser {
     if (form_.unused_names == 0 || !header_.layout.columns.empty())
       found = readings_of(form_.sample, header_.layout);
     if (const TableReading* const clear = found.clear()) {
-      header_.layout = clear->layout;
       header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
+      if (header_.layout.columns.empty() && form_.sample.named) tell_not_read(*clear);
+      header_.layout = clear->layout;
       return;
     }
     if (found.ways.empty() && form_.sample.named) fail(no_rate_among(names_));
     fail(
-        without_names() + found.why + options_in_words(found) +
+        without_names() + (kinds_.empty() ? "" : kinds_ + "; ") + found.why + options_in_words(found) +
         (found.ways.empty()
              ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
                "with the numbers and units of this file"
              : ""));
+  }
+
+  // Names columns of numbers that are not read, except times and counts of the rows, and how one of them is read that a
+  // rate table was commanded, or that names no axis.
+  void tell_not_read(const TableReading& reading) {
+    const TableSample& sample = form_.sample;
+    const std::string count = counting_column(sample);
+    std::vector<std::string> left;
+    std::string rate;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const std::string header = sample.header_of(i);
+      const bool is_read = std::ranges::any_of(
+          reading.layout.columns, [&](const CsvColumn& column) { return column.header == header; });
+      const Words words(names_[i]);
+      const bool is_time = header == reading.layout.time.value_or(CsvTime{}).header ||
+                           time_unit(sample.unit_of(i)) || words.have(Role::no_time) ||
+                           (words.have(Role::time) && names_[i] != "T");  // a temperature
+      if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == count) continue;
+      left.push_back(header);
+      if (!words.have(Role::truth) || !angle_unit(sample.unit_of(i), true, false)) continue;
+      const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
+      rate = "; as the true rate: " + reading.options + " " + option_for(reference, sample.unit_of(i));
+    }
+    const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;
+    left.resize(named);
+    if (named > 0)
+      header_.notices.push_back(path_ + ": not read: " + listed(left) +
+                                (more > 0 ? " and " + std::to_string(more) + " more" : "") + rate);
   }
 
   // Why columns have numbers and no names; "" if they have names.
@@ -260,6 +313,8 @@ class Chooser {
   const std::size_t line_;  // of the header; 0: none
   CsvHeader header_;
   std::size_t rates_ = 0;
+  std::string kinds_;                        // what is said of rows of several kinds or sensors
+  std::optional<std::size_t> names_sensor_;  // the column that names the sensors of rows in turn
 };
 
 }  // namespace

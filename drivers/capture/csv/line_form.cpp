@@ -239,7 +239,11 @@ std::string LineForm::rows_of(std::string_view text) {
 
 void LineForm::append_row(std::string_view line, std::string& out) {
   if (trimmed(line).empty()) return;
-  const auto append_other = [&] { out.append("# ").append(line); };
+  // Sentences and comments are kept as comments, rows of other kinds are not.
+  const auto append_other = [&] {
+    const bool kept = is_comment(line) ? novatel_log(line).empty() : values_in(line).numbers.empty();
+    if (kept) out.append("# ").append(line);
+  };
   std::string_view rest = line;
   if (!record_.empty()) {
     if (!line.starts_with(record_)) return append_other();

@@ -26,7 +26,7 @@ class LineForm {
   }
   // Column names from the lines, if any; a stamp is the first.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  // Converts whole lines to rows, keeping their number. Lines of another form become comments.
+  // Converts whole lines to rows, keeping their number. Sentences and comments become comments.
   [[nodiscard]] std::string rows_of(std::string_view text);
 
  private:

@@ -2,6 +2,8 @@
 #include "drivers/capture/csv/table_form.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -55,7 +57,10 @@ std::vector<std::string> names_in(std::string_view line, char separator, const R
   for (const char other : {',', ';', '\t', ' '}) {
     std::vector<std::string> cells;
     for (std::string& cell : cells_of(without_mark(line), other))
-      if (other == ' ' && !cells.empty() && (cell.starts_with('[') || cell.starts_with('(')))
+      // "Rate: 100 Hz" is a sentence.
+      if (is_value(cell, other))
+        cells.clear();
+      else if (other == ' ' && !cells.empty() && (cell.starts_with('[') || cell.starts_with('(')))
         cells.back() += ' ' + cell;
       else
         cells.push_back(std::move(cell));
@@ -193,13 +198,47 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
       comments.push_back("sample rate " + shortest(1.0 / *step_s));
     if (cells[0] == "Y_Unit_Label") {
       units = std::move(cells);
-      units[0].clear();
+      units[0] = "s";  // of X_Value
     }
   }
   lines.erase(lines.begin(), last.base());
   if (!lines.empty() && lines[0].text.ends_with("\tComment"))
     lines[0].text.remove_suffix(std::string_view("\tComment").size());
   return units;
+}
+
+// Drops rows of other kinds than the layout's, which may have any width.
+void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
+  if (!is_number_of_column(layout.only_header) || layout.only_value.empty()) return;
+  const std::size_t place = std::strtoul(layout.only_header.c_str() + 1, nullptr, 10) - 1;
+  std::size_t i = 0;
+  std::erase_if(lines, [&](const Line&) {
+    const Row& row = grid.rows()[i++];
+    return !row.comment && row.values > 0 &&
+           (place >= row.cells.size() || row.cells[place] != layout.only_value);
+  });
+  grid = Grid(lines, grid.separator());
+}
+
+// In a log whose lines have several widths and a text that names their kind, keeps the most frequent kind of those as wide
+// as the table. False: there is none.
+bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
+  for (std::size_t place = 0; place < grid.width(); ++place) {
+    std::map<std::string, std::ptrdiff_t> kinds;  // rows as wide as the table, minus others
+    for (const Row& row : grid.rows())
+      if (row.is_row() && place < row.cells.size())
+        kinds[row.cells[place]] += row.is_as_wide(grid.width()) ? 1 : -1;
+    const auto is_text = [&](const auto& kind) {
+      return !kind.first.empty() && !is_value(kind.first, grid.separator());
+    };
+    const auto [least, most] = std::ranges::minmax_element(kinds, {}, &decltype(kinds)::value_type::second);
+    if (least->second >= 0 || most->second <= 0 || !std::ranges::all_of(kinds, is_text)) continue;
+    layout.only_header = "#" + std::to_string(place + 1);
+    layout.only_value = most->first;
+    keep_kind(layout, lines, grid);
+    return true;
+  }
+  return false;
 }
 
 // First rows as cells by column.
@@ -247,6 +286,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
                      const CsvLayout& layout) {
   std::vector<Line> lines = first_lines(text, path);
   TableForm form;
+  form.layout = layout;
   TableSample& sample = form.sample;
   const std::vector<std::string> units = without_heads(lines, sample.comments);
   std::optional<char> separator;
@@ -262,16 +302,20 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   if (plain == lines.end()) fail_at(path, 0, "no header line, expected 'time_s,rate_radps,…'");
   if (!separator && is_capture_header(plain->text) && plain->text.find(',') != std::string_view::npos)
     separator = ',';
-  const Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
+  Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
+  keep_kind(layout, lines, grid);
   form.separator = grid.separator();
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (!grid.rows()[i].comment && grid.rows()[i].cells.size() > kInputLimits.csv_columns)
       fail_at(path, lines[i].number,
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
-  const bool headed = given.empty() && take_header(lines, grid, layout, form);
+  bool headed = given.empty() && take_header(lines, grid, layout, form);
+  if (!headed && given.empty() && grid.first() && layout.only_header.empty())
+    headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, form);
   if (headed) {
-    if (units.size() == sample.names.size()) sample.units = units;
+    if (units.size() >= sample.names.size())
+      sample.units.assign(units.begin(), units.begin() + std::ssize(sample.names));
     sample.named = !are_of_one_matrix(sample.names);
   } else if (grid.first()) {
     sample.named = !given.empty();
@@ -291,10 +335,14 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
             "line is " +
                 in_quotes(plain->text));
   }
-  for (const Line& line : lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = lines[i];
+    const Row& row = grid.rows()[i];
     if (line.number > form.last_line || (headed && line.number == form.header_line)) break;
-    sample.comments.emplace_back(is_comment(line.text) ? trimmed(trimmed(line.text).substr(1))
-                                                       : trimmed(line.text));
+    if (!headed && !row.comment && row.values == row.cells.size())
+      ++form.rows_above;
+    else
+      sample.comments.emplace_back(row.comment ? trimmed(trimmed(line.text).substr(1)) : trimmed(line.text));
   }
   return form;
 }

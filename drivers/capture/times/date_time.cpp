@@ -130,11 +130,18 @@ std::optional<double> finite_number(std::string_view text) {
 }
 
 PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
-  const std::size_t comma = decimal_comma ? cell.find(',') : std::string_view::npos;
-  if (comma == std::string_view::npos || cell.size() > made_.size()) return;
-  std::copy(cell.begin(), cell.end(), made_.begin());
-  made_[comma] = '.';
-  digits_ = {made_.data(), cell.size()};
+  const std::string_view typographic = "\xE2\x88\x92";
+  if (cell.size() > made_.size() || cell.find_first_of(",Dd\xE2") == std::string_view::npos) return;
+  char* end = made_.data();
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    const bool minus = cell.substr(i).starts_with(typographic);
+    *end++ = minus                              ? '-'
+             : cell[i] == ',' && decimal_comma  ? '.'
+             : cell[i] == 'D' || cell[i] == 'd' ? 'E'
+                                                : cell[i];
+    if (minus) i += typographic.size() - 1;
+  }
+  digits_ = {made_.data(), static_cast<std::size_t>(end - made_.data())};
 }
 
 TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order)

@@ -32,7 +32,7 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
 // The number if the whole text is a finite number; else nullopt.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
-// Cell with a decimal point instead of a comma.
+// Cell with a decimal point instead of a comma, an ASCII minus sign, and E for the exponent's D of Fortran.
 class PointDigits {
  public:
   PointDigits(std::string_view cell, bool decimal_comma);

@@ -193,7 +193,7 @@ class Checks:
 
     def check_which_column_is_the_time(self):
         """A phone's sensors side by side, each with its own clock; a time in whole seconds beside its milliseconds; a temperature T;
-        a slow pressure in the first column of a log without names; a count of the rows; a time as digits of a clock."""
+        a slow pressure in the first column of a log without names; a count of the rows; a time as digits of a clock; a time out of order."""
         self.reads("phone.csv", ["Time (s),X (m/s^2),Time (s),X (rad/s),Y (rad/s),Z (rad/s)", *self.rows(
             lambda i, x, y, z: (i / RATE_HZ, 9.8, 0.0225 + i * 1.01 / RATE_HZ, x * RAD, y * RAD, z * RAD))], unasked=True, says=("#3",), hz=RATE_HZ / 1.01)
         self.reads("coarse.csv", ["Timestamp,Milliseconds,wx (deg/s)", *self.rows(
@@ -206,6 +206,10 @@ class Checks:
         assert "'#1' counts the rows" in said and "=#1" not in said, said
         said = by_hand(self.file("nmea.csv", ["utc_time(hhmmss.sss),wx (deg/s)", *self.rows(lambda i, x, y, z: (f"{120000 + i / RATE_HZ:.3f}", x))]), RATE_HZ)[1]
         assert "no time column" in said, said
+        path = self.file("jitter.csv", ["time,wx (deg/s)", *self.rows(lambda i, x, y, z: (f"{(i + 3 * (i * i % 7) / 7) / RATE_HZ:.4f}", x))])
+        said = typed(path)[1]
+        assert "jitter.csv:" in said and "--sample-rate HZ reads all rows as even" in said, said
+        assert abs(typed(path, "--sample-rate", RATE_HZ)[0]["x"] / N - 1) < 0.05
         path = self.file("names.csv", ["时间(s),角速度X(°/s),温度(°C)", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 25))])
         to = self.folder / "names_read.csv"
         assert ran("convert", path, to).returncode == 0
@@ -275,11 +279,23 @@ class Checks:
 
     def check_sensors_in_turn(self):
         path = self.file("turn.csv", ["time_s,sensor_id,rate_x_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, i % 2, (x + i % 2) * RAD))])
-        _, said = typed(path)
-        option = re.search(r"--only sensor_id=\S+", said)
-        assert option, said
+        densities, said = typed(path)
+        option = re.search(r"--only sensor_id=[^;\s]+", said)
+        assert densities is None and option, said
+        assert "--only 'sensor_id=*'" in said and typed(path, "--only", "sensor_id=*")[0], said
         densities, _ = typed(path, *shlex.split(option.group(0)))
         assert abs(densities["x"] / N * math.sqrt(0.5) - 1) < 0.07, densities  # half of the samples per second
+
+    def check_rows_of_several_kinds_without_a_header(self):
+        """From the first row on, wherever three of a kind stand in a row; with and without the option."""
+        rows = [line for i, row in enumerate(self.rows(lambda i, x, y, z: (5 * i, "imu", x * RAD, y * RAD, z * RAD)))
+                for line in ([row] if i > ROWS // 2 else [row, f"{5 * i},baro,100.1"])]
+        path, to = self.file("kinds.csv", rows), self.folder / "kinds_read.csv"
+        layout = ["--time", "#1:ms", *(word for i, a in enumerate("xyz") for word in ("--column", f"rate_{a}_radps=#{3 + i}:rad/s"))]
+        for only in ((), ("--only", "#2=imu")):
+            assert ran("convert", path, to, *layout, *only).returncode == 0
+            lines = to.read_text().splitlines()
+            assert len(lines) == ROWS + 1 and lines[1].startswith("0,"), (len(lines), lines[:3])
 
     def check_what_the_values_say(self):
         def findings(name, rates, unit=RAD, rate_hz=RATE_HZ):

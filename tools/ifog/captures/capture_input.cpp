@@ -47,8 +47,8 @@ void CaptureInput::add_to(const Command& command) {
           "--column", columns,
           "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
           "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
-          "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts. "
-          "May stand several times; columns not named are ignored")
+          "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts; "
+          "reference_rate_x_radps is the true rate. May stand several times; columns not named are ignored")
       .type_name("NAME=HEADER[:UNIT]");
   command
       .add_option(
@@ -59,7 +59,7 @@ void CaptureInput::add_to(const Command& command) {
   command
       .add_option("--sample-rate", sample_rate_hz, "Its rows are even, at this rate, whatever its times say")
       .positive();
-  command.add_option("--only", only, "Rows in which this column holds this text: sensor_id=0")
+  command.add_option("--only", only, "Rows with this text in this column: sensor_id=0; or *: all, as of one")
       .type_name("HEADER=VALUE");
   command.add_option("--repeats", repeats, "Rows that repeat the one before: drop or keep")
       .type_name("WHAT")

@@ -66,7 +66,7 @@ void LongTable::keep_rate_rows(const std::string& path) {
   // Line numbers apply to the rows of the file.
   header_line = 0;
   lines.clear();
-  warn("{}: {} of {} rows have a rate, and only they are read: the others are of a faster sensor\n", path,
+  warn("{}: {} of {} rows have a rate, and only they are read: the others are of another sensor\n", path,
        size(), before);
 }
 
