@@ -336,8 +336,8 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
   } else if (!out.other_units.empty()) {
     out.why = "the unit of the " + std::string(time_units.empty() ? "rate" : "time") + " is not named";
-    if (const RateCandidate& rate = sensors[0][0]; time_units.empty() && !rate.units.empty())
-      out.why = in_quotes(table.header_of(rate.place)) +
+    if (const Rates& rates = sensors[0]; time_units.empty() && !rates.empty() && !rates[0].units.empty())
+      out.why = in_quotes(table.header_of(rates[0].place)) +
                 " has a unit of angle, as a rate, an angle or the turn in each sample may";
   }
   if (counts)

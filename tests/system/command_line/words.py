@@ -39,7 +39,7 @@ class Checks:
         path, growing = self.folder / "growing.csv", [v + SIGMA * (0.4 + 2 * i / ROWS) * math.sin(2 * math.pi * 7.3137 * i / RATE_HZ) for i, v in enumerate(self.noise)]
         path.write_text("\n".join(["time_s,rate_radps", *[f"{i / RATE_HZ!r},{v!r}" for i, v in enumerate(growing)]]) + "\n")
         said = ifog("diagnose", path)
-        assert said.count("1. line") == 1 and "a line, not corrected: " in said, said
+        assert said.count("1. line") == 1 and "line, not corrected: " in said, said
         assert "what is left of the line at 7.314 Hz" in said and "that is no line" not in said, said
         assert "Nothing more is found in the rest." in ifog("diagnose", self.one, "--report", self.folder / "one.html")
         page = (self.folder / "one.html").read_text()

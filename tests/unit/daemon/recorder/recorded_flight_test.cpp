@@ -135,7 +135,7 @@ TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
   EXPECT_NE(complaint_.find("nose.night.json: is no JSON object"), std::string::npos) << complaint_;
   write("state/nose.night.json", "{\"schema\": \"ifog.night/1\"}");
   EXPECT_NE(ifog(night), 0);
-  EXPECT_NE(complaint_.find("nose.night.json: damaged: key 'until' not found"), std::string::npos)
+  EXPECT_NE(complaint_.find("nose.night.json: damaged: key 'sensor' not found"), std::string::npos)
       << complaint_;
   EXPECT_EQ(complaint_.find("json.exception"), std::string::npos) << complaint_;
   fs::remove(path("state/nose.night.json"));
