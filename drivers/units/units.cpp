@@ -125,19 +125,19 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
   return text.substr(from, text.find_last_not_of(what) - from + 1);
 }
 
-// In ASCII, lower case, trimmed, without brackets. "" if the case is decisive and ambiguous.
+// In ASCII, lower case, trimmed, without brackets. "" if the case is decisive and ambiguous, or the text too long for a unit.
 std::string plain(std::string_view text) {
   constexpr std::string_view kBlank = " \t";
+  if (text.size() > 64) return "";
   text = trimmed(text, kBlank);
   if (text.size() > 2 && (text.front() == '[' || text.front() == '(') &&
       text.back() == (text.front() == '[' ? ']' : ')'))
     text = trimmed(text.substr(1, text.size() - 2), kBlank);
   std::string out;
   while (!text.empty()) {
-    const Spelling* found = nullptr;
-    for (const Spelling& spelling : kSpellings)
-      if (found == nullptr && text.starts_with(spelling.from)) found = &spelling;
-    if (found != nullptr) {
+    const auto* const found = std::ranges::find_if(
+        kSpellings, [text](const Spelling& each) { return text.starts_with(each.from); });
+    if (found != kSpellings.end()) {
       out += found->to;
       text.remove_prefix(found->from.size());
       continue;

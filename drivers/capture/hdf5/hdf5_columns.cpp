@@ -232,15 +232,10 @@ std::vector<std::string> Hdf5Columns::names_here() {
       refuse("a name of " + std::to_string(length) + " bytes, expected at most " +
              std::to_string(kLongestName));
     H5O_info_t object{};
-    const bool known = H5Oget_info_by_name2(place_, name.data(), &object, H5O_INFO_BASIC, access_) >= 0;
-    // A table of records is read as a group.
-    const auto is_table = [&] {
-      const Hdf5Id dataset(H5Dopen2(place_, name.data(), access_)), type(H5Dget_type(dataset));
-      return H5Tget_class(type) == H5T_COMPOUND;
-    };
-    known && (object.type == H5O_TYPE_GROUP || (object.type == H5O_TYPE_DATASET && is_table()))
-        ? groups_.push_back("--group " + shell_word(here_ + "/" + name.data()))
-        : names.push_back(name.data());
+    const bool is_group = H5Oget_info_by_name2(place_, name.data(), &object, H5O_INFO_BASIC, access_) >= 0 &&
+                          object.type == H5O_TYPE_GROUP;
+    is_group ? groups_.push_back("--group " + shell_word(here_ + "/" + name.data()))
+             : names.push_back(name.data());
   }
   return names;
 }
