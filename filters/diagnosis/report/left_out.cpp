@@ -66,12 +66,12 @@ void refuse_other_unit(const Diagnosis& diagnosis) {
     if (found.effect.form != "linear" || !is_reference_rate(found.effect.channel)) continue;
     const double times = 1.0 + found.effect.parameters.front().value;
     for (const auto& [expected, why] : std::initializer_list<std::pair<double, const char*>>{
-             {-1.0, "of reversed sign (--column NAME=HEADER:-1UNIT turns it)"},
-             {kDegree, "in degrees"},
-             {1.0 / kDegree, "in radians"}})
+             {-1.0, "is of reversed sign (--column NAME=HEADER:-1UNIT turns it)"},
+             {kDegree, "is in degrees"},
+             {1.0 / kDegree, "is in radians"}})
       if (std::abs(times / expected - 1.0) < kNear)
-        throw std::invalid_argument(formatted(
-            "the rate is %.4g times the reference, expected about 1: the reference is %s", times, why));
+        throw std::invalid_argument(formatted("the rate is %.4g times %s, expected about 1: the reference %s",
+                                              times, found.effect.channel.c_str(), why));
   }
 }
 
