@@ -125,7 +125,7 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
   return text.substr(from, text.find_last_not_of(what) - from + 1);
 }
 
-// In ASCII, lower case, trimmed, without brackets. "" if the case is decisive and ambiguous, or the text too long for a unit.
+// In ASCII, lower case, trimmed, without brackets. "" if its case is ambiguous or it is too long for a unit.
 std::string plain(std::string_view text) {
   constexpr std::string_view kBlank = " \t";
   if (text.size() > 64) return "";

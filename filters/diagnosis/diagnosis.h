@@ -115,9 +115,9 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;          // those with channels, then ramps, then lines in the samples
   std::optional<ModelParameter> bias;        // relative to a reference; an effect if it is significant
   std::vector<double> covariance;            // of the parameters of all effects in order, row-major
-  // Without a reference, by parameter in the same order: mean over the captures of the correction for one unit of it, if the
-  // effect's channels were never where it is zero; else 0. The model removes this mean from its corrections: a bias at 12 V is
-  // unknown after captures at 5 V. May be empty: all 0.
+  // Without a reference, in the same order: mean over the captures of the correction for one unit of the
+  // parameter, if the effect's channels were never where it is zero; else 0. The model removes this mean: a
+  // bias at 12 V is unknown after captures at 5 V. Empty: all 0.
   std::vector<double> means;
   std::vector<ChannelRange> ranges;             // of the channels used by the effects
   std::map<std::string, double> before, after;  // held-out figures, units in their names

@@ -17,8 +17,8 @@ struct Constant {
   std::vector<double> with;
 };
 
-// The insignificant bias relative to a reference; or what removes the mean of the corrections. rows: written parameters, of
-// `all`.
+// The insignificant bias relative to a reference; or what removes the mean of the corrections. rows: written
+// parameters, of `all`.
 Constant constant_of(const Diagnosis& diagnosis, const std::vector<std::size_t>& rows, std::size_t all) {
   Constant out{std::nullopt, std::vector<double>(rows.size(), 0.0)};
   const bool named = std::ranges::any_of(

@@ -45,7 +45,7 @@ void find_held(const std::vector<double>& values, double period_s, std::vector<V
                                " Hz, and figures below that period are the logger's"});
 }
 
-// In most stretches two values are 99 % while the noise is below 0.21 to 0.39 of their distance, by the level between them.
+// In most stretches two values are 99 % while the noise is below 0.21 to 0.39 of their distance, by the level.
 void find_coarse(const std::vector<double>& values, std::vector<ValueFault>& found) {
   double step = std::numeric_limits<double>::infinity();
   std::size_t stretches = 0, coarse = 0;

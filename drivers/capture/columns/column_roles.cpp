@@ -327,11 +327,8 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   out.ways.front().clear = out.ways.front().clear && out.other_units.empty();
   if (time_columns == 0 && !any_time) {
     const std::string counted = counting_column(table);
-    out.why = counted.empty()
-                  ? "no time column"
-                  : "no time column, " + in_quotes(counted) +
-                        " counts the rows (if it also counts lost ones, " +
-                        option_for(CsvTime{counted, "10ms"}) + " with the true period finds them)";
+    out.why =
+        counted.empty() ? "no time column" : "no time column, " + in_quotes(counted) + " counts the rows";
   } else if (out.ways.size() > 1) {
     out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
   } else if (!out.other_units.empty()) {

@@ -50,8 +50,8 @@ std::vector<std::string> filled(const std::vector<std::string>& cells) {
   return out;
 }
 
-// True if values increase at least once in `each` steps, and hardly ever decrease. A named time may decrease more often, as where
-// a log is not in order: its rows are checked one by one.
+// True if values increase at least once in `each` steps, and hardly ever decrease. A named time may decrease
+// more often, because its rows are checked one by one.
 bool goes_on(const std::vector<double>& values, std::size_t each, bool named) {
   std::size_t back = 0, on = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {

@@ -248,7 +248,7 @@ class Chooser {
       const Words words(names_[i]);
       const bool is_time = header == reading.layout.time.value_or(CsvTime{}).header ||
                            time_unit(sample.unit_of(i)) || words.have(Role::no_time) ||
-                           (words.have(Role::time) && names_[i] != "T");  // a temperature
+                           words.have(Role::time);
       if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == count) continue;
       left.push_back(header);
       if (!words.have(Role::truth) || !angle_unit(sample.unit_of(i), true, false)) continue;

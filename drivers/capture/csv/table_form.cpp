@@ -211,17 +211,20 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
 void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   if (!is_number_of_column(layout.only_header) || layout.only_value.empty()) return;
   const std::size_t place = std::strtoul(layout.only_header.c_str() + 1, nullptr, 10) - 1;
+  const auto is_wanted = [&](const Row& row) {
+    return place < row.cells.size() && row.cells[place] == layout.only_value;
+  };
+  if (std::ranges::none_of(grid.rows(), is_wanted)) return;  // told where the rows are read
   std::size_t i = 0;
   std::erase_if(lines, [&](const Line&) {
     const Row& row = grid.rows()[i++];
-    return !row.comment && row.values > 0 &&
-           (place >= row.cells.size() || row.cells[place] != layout.only_value);
+    return !row.comment && row.values > 0 && !is_wanted(row);
   });
   grid = Grid(lines, grid.separator());
 }
 
-// In a log whose lines have several widths and a text that names their kind, keeps the most frequent kind of those as wide
-// as the table. False: there is none.
+// In a log whose lines have several widths and a text that names their kind, keeps the most frequent kind of
+// those as wide as the table. False: there is none.
 bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   for (std::size_t place = 0; place < grid.width(); ++place) {
     std::map<std::string, std::ptrdiff_t> kinds;  // rows as wide as the table, minus others

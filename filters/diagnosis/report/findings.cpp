@@ -237,8 +237,8 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
 
 namespace {
 
-// True if one of its channels had the value at which the effect is zero. An effect of time, of a change, of a phase or of a
-// vibration is zero where the sensor is at rest.
+// True if one of its channels had the value at which the effect is zero. An effect of time, of a change, of a
+// phase or of a vibration is zero where the sensor is at rest.
 bool is_zero_within(const Effect& effect, const std::vector<ChannelRange>& ranges) {
   const auto covers = [&](const std::string& channel, double reference) {
     const auto range = std::ranges::find(ranges, channel, &ChannelRange::channel);

@@ -24,11 +24,11 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 // or no effect uses a channel. captures: number diagnosed together.
 std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures);
 
-// Throws std::invalid_argument if the rate is so many times the reference as for another sign or unit, which no scale factor is.
+// Throws std::invalid_argument if the rate is as many times the reference as another sign or unit makes it.
 void refuse_other_unit(const Diagnosis& diagnosis);
 
-// Sentence on a record that turns while more than a twentieth of the variance of 1 s means is not the reference's; empty if
-// none does.
+// Sentence on a record that turns while more than a twentieth of the variance of its 1 s means is not the
+// reference's; empty if none does.
 std::string unlike_reference_in_words(const std::vector<Record>& records,
                                       const std::vector<EvenError>& errors, double sample_s);
 

@@ -296,6 +296,7 @@ class Checks:
             assert ran("convert", path, to, *layout, *only).returncode == 0
             lines = to.read_text().splitlines()
             assert len(lines) == ROWS + 1 and lines[1].startswith("0,"), (len(lines), lines[:3])
+        assert "no column '#9'" in ran("convert", path, to, *layout, "--only", "#9=imu").stderr
 
     def check_what_the_values_say(self):
         def findings(name, rates, unit=RAD, rate_hz=RATE_HZ):

@@ -78,8 +78,8 @@ TEST(Laws, ABiasThatAgesIsCorrectedBySlope) {
   EXPECT_LT(left_of(found, make(2, 0.0, 0.0, false, law)), 0.15);
 }
 
-// Neither the bias at 12 V nor a curve is known from a record at 12.3 V: what is corrected there has mean zero, and is as
-// certain there as the record makes it. At a temperature about 25 degrees the correction is zero at 25.
+// Neither the bias at 12 V nor a curve is known from a record at 12.3 V: what is corrected there has mean zero,
+// and is as certain there as the record makes it. About 25 degrees the correction is zero at 25.
 TEST(Laws, AwayFromWhereItIsZeroACorrectionKeepsTheMean) {
   const auto law = [](double, double, double, double supply) { return 2e-5 * supply; };
   const Capture made = make(1, kWhite, 0.0, false, law);

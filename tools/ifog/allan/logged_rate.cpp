@@ -30,8 +30,8 @@ const char* words_for(Deviation kind) {
                                         : "the overlapping deviation";
 }
 
-// The averaging times that the user wants and this rate has; notes tell of the others, and of those that are no multiple of the
-// period. Throws std::runtime_error if none is left.
+// The averaging times that the user wants and this rate has; notes tell of the others, and of those that are no
+// multiple of the period. Throws std::runtime_error if none is left.
 std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
                                          AllanRecord& record) {
   std::vector<std::size_t> m;
