@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "filters/allan/deviation.h"
-#include "filters/allan/two_sum.h"
+#include "filters/linear/exact_sum.h"
 
 namespace ifog {
 namespace {
@@ -87,41 +87,32 @@ AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> 
 
 void AngleSum::find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
   constexpr std::size_t kLanes = 4;  // independent sums for instruction-level parallelism
-  std::array<double, kLanes> sum{}, rest{};
+  std::array<ExactSum, kLanes> sum;
   std::size_t total = 0;
   for (const Stretch& s : stretches) {
     total += s.size();
     const std::span<const double> rates = s.of(rate_radps);
     std::size_t i = 0;
-    double error = 0.0;
-    const auto add = [&](std::size_t lane, double rate) {
-      two_sum(sum[lane], rate, sum[lane], error);
-      rest[lane] += error;
-    };
     for (; i + kLanes <= rates.size(); i += kLanes)
-      for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, rates[i + lane]);
-    for (; i < rates.size(); ++i) add(0, rates[i]);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane].add(rates[i + lane]);
+    for (; i < rates.size(); ++i) sum[0].add(rates[i]);
   }
-  double all = 0.0, left = 0.0, error = 0.0;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    two_sum(all, sum[lane], all, error);
-    left += error + rest[lane];
-  }
-  mean_ = total > 0 ? (all + left) / static_cast<double>(total) : 0.0;
+  double all = 0.0;
+  for (const ExactSum& each : sum) all += each.value();
+  mean_ = total > 0 ? all / static_cast<double>(total) : 0.0;
 }
 
 void AngleSum::sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
-  double high = 0.0, low = 0.0, error = 0.0;
+  ExactSum sum;
   // The error of the rounded mean is a constant, which a second difference cancels.
   const auto add = [&](double rate) {
-    two_sum(high, rate - mean_, high, error);
-    low += error;
-    angle_.push_back(high + low);
+    sum.add(rate - mean_);
+    angle_.push_back(sum.value());
   };
   for (const Stretch& s : stretches) {
     if (s.lost == 0) {
       parts_.push_back({angle_.size(), 1});
-      high = low = 0.0;
+      sum = {};
       angle_.push_back(0.0);
     }
     const double fill = s.lost == 0 ? 0.0 : mean_around(rate_radps, (&s)[-1].end, s);

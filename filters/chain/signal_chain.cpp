@@ -32,12 +32,6 @@ std::uint32_t line_of(const Model& model, const std::string& channel) {
 
 }  // namespace
 
-void ExactSum::add(double term) noexcept {
-  const double sum = sum_ + term;
-  lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
-  sum_ = sum;
-}
-
 ChainParts::ChainParts(const ChainSettings& settings)
     : facts_(settings.facts), period_s_(1.0 / settings.facts.nominal_rate_hz) {
   FilterSettings base;

@@ -21,6 +21,7 @@
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/learned_noise.h"
 #include "filters/estimator/walk.h"
+#include "filters/linear/exact_sum.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/settings/filter_settings.h"
@@ -64,17 +65,6 @@ struct ChainOutput {
   EstimatorOutput estimate;
   std::uint32_t flags = 0;              // ChainFlags
   std::uint32_t compensator_flags = 0;  // CompensatorFlags
-};
-
-// Compensated sum: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen",
-// ZAMM 54 (1974). A plain sum of 4·10^8 increments may lose 1e-9 rad; the error here is one rounding.
-class ExactSum {
- public:
-  void add(double term) noexcept;
-  [[nodiscard]] double value() const noexcept { return sum_ + lost_; }
-
- private:
-  double sum_ = 0.0, lost_ = 0.0;
 };
 
 class ChainParts {

@@ -217,14 +217,13 @@ Motion motion_of(std::string_view channel) {
   if (kind == ChannelKind::kOtherAxis) return Motion::kRate;
   if (any({"seis", "geophone"}) && !in({"_m", "_mm", "_um", "_nm", "_mps2"})) return Motion::kVelocity;
   if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
-  if (kind != ChannelKind::kOther) return Motion::kNone;
+  // What turns the sensor. A light source has a drive current, too.
+  const bool machine = any({"motor", "wheel", "servo", "gimbal", "mount", "axle", "shaft", "winch",
+                            "thruster", "rudder", "actuator", "throttle"}) ||
+                       (in({"_rpm"}) && any({"drive"}));
+  if (kind == ChannelKind::kSupply ? !machine : kind != ChannelKind::kOther) return Motion::kNone;
   if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
-  // Rotation speed of machines next to a gyro at rest, and flow of air and water, are no motion of the
-  // sensor.
-  if (in({"_rpm"}))
-    return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"})
-               ? Motion::kRate
-               : Motion::kNone;
+  // Flow of air and water is no motion of the sensor.
   if (in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn", "_mmps", "_umps", "_nmps"}))
     return any({"wind", "airspeed", "flow", "fan"}) ? Motion::kNone : Motion::kVelocity;
   if (in({"_rad", "_deg", "_turns", "_mrad", "_urad", "_nrad", "_arcsec"}))
@@ -232,7 +231,8 @@ Motion motion_of(std::string_view channel) {
   if (in({"_m", "_mm", "_um", "_nm"}))
     return any({"wave", "lambda", "level", "fibre", "fiber"}) ? Motion::kNone : Motion::kPosition;
   if (any({"tilt", "inclin", "heading", "yaw", "pitch", "encoder", "steer"})) return Motion::kAngle;
-  return any({"curvature", "odometer", "wheel", "position"}) ? Motion::kPosition : Motion::kNone;
+  if (any({"curvature", "odometer", "position"})) return Motion::kPosition;
+  return machine ? Motion::kRate : Motion::kNone;
 }
 
 ChannelKind kind_of(std::string_view channel) {

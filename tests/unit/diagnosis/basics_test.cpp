@@ -158,7 +158,7 @@ TEST(Basics, ARateTableOfAFewPointsIsAccepted) {
 
 // A swing of the sensor itself, seen by what senses motion: nothing of it is an error.
 TEST(Motion, ExplainsNothingWithoutAReference) {
-  for (const char* name : {"ground_x_mps", "accel_x_mps2", "mount_rad", "deck_y_radps", "drive_wheel_rpm"}) {
+  for (const char* name : {"sea_mps", "accel_x_mps2", "mount_rad", "deck_radps", "wheel_rpm", "motor_A"}) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     Rows rows;
