@@ -28,10 +28,17 @@ constexpr double kCertain = 5.0;          // standard deviations
 // Means of 1 s at rest scatter by 0.02 to 0.1 °/s for the noisiest MEMS gyros (data sheets, L3GD20 to LISY300).
 constexpr double kMostNoise_radps = 0.2 * kDegree;
 constexpr double kShaken = 4.0;
+constexpr std::size_t kQuarters = 4;      // of a window
 constexpr double kQuietest = 0.05;        // share of the record assumed quiet
 constexpr std::size_t kShortestRest = 8;  // windows between two moving ones
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
+
+std::vector<double> finite(std::span<const double> values) {
+  std::vector<double> there;
+  std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
+  return there;
+}
 
 double quantile(std::vector<double> values, double p) {
   if (values.empty()) return 0.0;
@@ -47,7 +54,6 @@ struct Window {
 // Uses four quarters, so that one outlier has no effect: the mean is that of the middle two, the scatter is
 // the second smallest. Interleaved for instruction-level parallelism.
 Window window_of(std::span<const double> rate) {
-  constexpr std::size_t kQuarters = 4;
   std::array<double, kQuarters> n{}, level{}, scatter{};
   std::array<std::span<const double>, kQuarters> quarter;
   for (std::size_t q = 0; q < kQuarters; ++q) {
@@ -213,9 +219,7 @@ Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector
 Rest::SlowTurns dwells_of(std::span<const std::span<const double>> axes) {
   Rest::SlowTurns found;
   for (const std::span<const double> values : axes) {
-    std::vector<double> there;
-    std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
-    const double level = quantile(std::move(there), 0.5);
+    const double level = quantile(finite(values), 0.5);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double away = std::abs(values[i] - level);
       if (!(away > kLeastTurn)) continue;
@@ -230,7 +234,7 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
   Rest rest;
   rest.samples = samples;
   for (std::size_t i = 0; i < state.size(); ++i) {
-    const std::size_t begin = i * window, end = i + 1 == state.size() ? samples : begin + window;
+    const std::size_t begin = i * window, end = std::min(begin + window, samples);
     if (state[i] == State::kTurning) rest.turned += end - begin;
     if (state[i] == State::kShaking) rest.shaken += end - begin;
     if (state[i] != State::kResting) continue;
@@ -246,20 +250,32 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
 Rest rest_by_references(std::span<const std::span<const double>> references, std::size_t samples) {
   std::vector<State> state(std::max<std::size_t>(1, samples), State::kResting);
   for (const std::span<const double> values : references) {
-    std::vector<double> there;
-    std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
-    const double level = quantile(std::move(there), 0.5);
+    const double level = quantile(finite(values), 0.5);
     for (std::size_t i = 0; i < samples; ++i)
       if (std::abs(values[i] - level) > kLeastTurn) state[i] = State::kTurning;
   }
   return as_samples(state, 1, samples);
 }
 
-std::vector<Window> rest_windows(std::span<const double> rate, double period_s) {
-  const std::size_t window = samples_of_window(period_s), count = rate.size() / window;
+// Level of the quarter farthest from the mean, by medians, so that one outlier has no effect.
+double farthest_quarter(std::span<const double> rate, double mean) {
+  double farthest = mean;
+  for (std::size_t q = 0; q < kQuarters; ++q) {
+    const double level =
+        quantile(finite(rate.subspan(q * rate.size() / kQuarters, rate.size() / kQuarters)), 0.5);
+    if (std::abs(level - mean) > std::abs(farthest - mean)) farthest = level;
+  }
+  return farthest;
+}
+
+// The last one ends with the record and may overlap the one before it. Needs a whole window. At the ends of the
+// record no neighbour shows what moved in one quarter.
+std::vector<Window> rest_windows(std::span<const double> rate, std::size_t window) {
   std::vector<Window> out;
-  out.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) out.push_back(window_of(rate.subspan(i * window, window)));
+  for (std::size_t begin = 0; begin < rate.size(); begin += window)
+    out.push_back(window_of(rate.subspan(std::min(begin, rate.size() - window), window)));
+  out.front().mean = farthest_quarter(rate.first(window), out.front().mean);
+  out.back().mean = farthest_quarter(rate.last(window), out.back().mean);
   return out;
 }
 
@@ -269,7 +285,7 @@ Rest find_rest(std::span<const std::span<const double>> axes,
                std::span<const std::span<const double>> references, double period_s) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
   const std::size_t window = samples_of_window(period_s);
-  const std::size_t count = samples / window;
+  const std::size_t count = samples < window ? 0 : (samples + window - 1) / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
   if (count == 0 || period_s > kSlowest_s) {
@@ -279,7 +295,7 @@ Rest find_rest(std::span<const std::span<const double>> axes,
   }
   const double window_s = static_cast<double>(window) * period_s;
   std::vector<std::vector<Window>> windows(axes.size());
-  share_out(axes.size(), 0, [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
+  share_out(axes.size(), 0, [&](std::size_t a) { windows[a] = rest_windows(axes[a], window); });
   std::vector<double> leap(count);
   for (std::size_t a = 0; a < axes.size(); ++a)
     mark_axis(windows[a], window_s, least_step(axes[a]), state, leap);

@@ -76,6 +76,19 @@ TEST(Rest, AFlightThatHardlyRestsIsNoNoise) {
   EXPECT_THROW(ifog::require_rest(rest, 1.0 / kRate, 0.0), std::invalid_argument);
 }
 
+// A hand that sets a gyro down, cut a tenth of a second too early or too late (a Ferraris calibration).
+TEST(Rest, MotionInTheFirstOrLastTenthOfASecondIsFound) {
+  for (const std::size_t samples : {6000U, 6020U})
+    for (const std::size_t at : {std::size_t{0}, samples - 10}) {
+      std::vector<double> rate = ifog::simulate::noise({.N = 1e-4}, kRate, samples, 5);
+      for (std::size_t i = at; i < at + 10; ++i) rate[i] += 2.0;
+      const Rest rest = rest_of(rate);
+      const double from_s = static_cast<double>(at) / kRate;
+      EXPECT_FALSE(at_rest(rest, from_s, from_s + 0.1)) << samples << " " << at;
+      EXPECT_GT(rest.resting(), samples - 200);
+    }
+}
+
 TEST(Rest, WithoutRestThereIsNone) {
   EXPECT_EQ(rest_of_motion(200.0, 26.0, 0.0, 0.04, 0.1).resting(), 0U);  // a hand-held VMU931
   EXPECT_EQ(rest_of_motion(4.0, 48.0, 0.0, 0.37, 0.0).resting(), 0U);    // a robot fish: six windows
