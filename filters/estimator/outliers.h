@@ -30,11 +30,11 @@ class Outliers {
     const Lanes each = at_rest ? Lanes::Zero() : (least_surprise(trackers, now) / allowed).eval();
     const double least = each.maxCoeff(&axis);
     const Lanes& rate = now.rate;
-    seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Frequent outliers at rest may be shocks, whose angle counts.
     const double most = !moving && share_ > kRare ? kFarSquare : kMostSquare;
     if (least <= most) {
-      if (!moving) share_ += ((least > kMostSquare ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
+      if (!moving)
+        share_ += ((least > kMostSquare ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / kTailMemory;
       if (run_ > 0 && !moving) rejected_ += 1.0;
       run_ = 0;
       return Verdict::usual;
@@ -77,13 +77,12 @@ class Outliers {
     return least;
   }
 
-  // Share of all measurements. Clipping so many costs the filter at rest 0.5 % of its variance; rejecting
-  // them on one side only would bias it.
-  static constexpr double kRare = 2e-4;
+  // Share of all measurements: two within the memory are frequent. Clipping so many costs the filter at rest 0.3 %
+  // of its variance; rejecting them on one side only would bias it. Two in succession exceed kEvidence.
+  static constexpr double kRare = 1.0 / kTailMemory;
 
   Lanes last_ = Lanes::Zero();  // of the run
-  double seen_ = 0.0, share_ = 0.0, nearness_ = 0.0, squares_ = 0.0, unlikely_ = 0.0, rejected_ = 0.0,
-         jumps_ = 0.0;
+  double share_ = 0.0, nearness_ = 0.0, squares_ = 0.0, unlikely_ = 0.0, rejected_ = 0.0, jumps_ = 0.0;
   std::size_t run_ = 0;
 };
 
