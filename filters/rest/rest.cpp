@@ -346,8 +346,13 @@ void require_rest(const Rest& rest, double period_s, double first_s) {
   // The quietest samples count as rest in any record: so few prove none.
   const auto few = static_cast<std::size_t>(2.0 * kQuietest * static_cast<double>(rest.samples));
   if (rest.resting() > std::max(rest.turned, few)) return;
-  throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) + rest.wrapped +
-                              "; expected a record that is mostly at rest, in the right unit");
+  // One window on either side counts as motion.
+  const auto shortest = static_cast<double>((kShortestRest + 2) * samples_of_window(period_s)) * period_s;
+  throw std::invalid_argument(
+      "the sensor was " + in_words(rest, period_s, first_s) + rest.wrapped +
+      formatted("; expected a record that is mostly at rest, in the right unit; choose a "
+                "rest of less than %.2g s by --from and --to",
+                shortest));
 }
 
 std::vector<Stretch> common(std::span<const Stretch> a, std::span<const Stretch> b) {
