@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
 #include <string_view>
 #include <vector>
-
-#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -46,14 +42,6 @@ auto find(const Table& table, std::string_view name) {
 }
 
 }  // namespace
-
-LcmField::LcmField(const std::string& text) {
-  const std::optional<LcmFieldName> parsed = LcmFieldName::parse(text);
-  if (!parsed)
-    throw std::runtime_error("sensor.channel.field = \"" + printable(text) + "\": expected " +
-                             kLcmFieldExpected);
-  field_ = *parsed;
-}
 
 bool is_message(std::span<const std::uint8_t> bytes) {
   channel_t channel{};

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "daemon/config/published_type.h"
+#include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
 #include "drivers/transport/serial/serial_port.h"
@@ -26,18 +27,10 @@ struct TransportConfig {
   Kind kind = Kind::file;
   // serial; baud 0: from the driver
   SerialSettings serial;
-  // can
   std::string interface;  // can: "can0"; file: only this interface of a candump log, "" for all
   UdpSettings udp;
   TcpSettings tcp;
-  // file
-  std::string path;       // "-" is standard input
-  bool candump = false;   // else raw bytes
-  bool recorded = false;  // at recorded times; else as fast as possible
-  double speed = 1.0;
-  double bytes_per_second = 0.0;
-  std::uint32_t block_bytes = 0;
-  bool await_writer = true;  // of a FIFO
+  FileSettings file;
 
   bool operator==(const TransportConfig&) const = default;
 };

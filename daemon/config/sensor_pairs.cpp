@@ -29,8 +29,8 @@ std::string device_of(const TransportConfig& transport) {
   if (transport.kind == Kind::serial) return transport.serial.device;
   if (transport.kind != Kind::file) return "";
   struct stat info {};
-  const bool regular = stat(transport.path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
-  return transport.path != "-" && regular ? "" : transport.path;
+  const bool regular = stat(transport.file.path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
+  return transport.file.path != "-" && regular ? "" : transport.file.path;
 }
 
 // Compares devices behind names: udev links, and standard input.

@@ -56,6 +56,21 @@ TcpSettings read_tcp(TableReader& in, const ReadingContext& context) {
   return out;
 }
 
+FileSettings read_file(TableReader& in, const ReadingContext& context) {
+  FileSettings out;
+  out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));
+  if (in.choice("format", {"bytes", "candump"}) == "candump") out.format = FileSettings::Format::candump;
+  if (in.choice("pace", {"free", "recorded"}) == "recorded") out.pace = FileSettings::Pace::recorded;
+  take(in.number("speed", {1e-3, 1e6}), out.speed);
+  take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
+  take(in.integer("block_bytes", 1, 65'536), out.block_bytes);
+  take(in.boolean("await_writer"), out.await_writer);
+  if (out.pace == FileSettings::Pace::recorded && out.format == FileSettings::Format::bytes &&
+      !in.has("bytes_per_second"))
+    in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second as well");
+  return out;
+}
+
 }  // namespace
 
 TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context) {
@@ -81,16 +96,8 @@ TransportConfig read_transport(const toml::table& table, const std::string& wher
     out.tcp = read_tcp(in, context);
   } else {
     out.kind = TransportConfig::Kind::file;
-    out.path = context.absolute(in.required_text("path", "a file or FIFO, \"-\" for the standard input"));
-    if (const auto format = in.choice("format", {"bytes", "candump"})) out.candump = *format == "candump";
-    if (const auto pace = in.choice("pace", {"free", "recorded"})) out.recorded = *pace == "recorded";
-    take(in.number("speed", {1e-3, 1e6}), out.speed);
-    take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
-    take(in.integer("block_bytes", 1, 65'536), out.block_bytes);
-    take(in.boolean("await_writer"), out.await_writer);
+    out.file = read_file(in, context);
     take(in.text("interface"), out.interface);
-    if (out.recorded && !out.candump && !in.has("bytes_per_second"))
-      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second as well");
   }
   in.refuse_the_rest();
   return out;

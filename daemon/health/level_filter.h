@@ -25,7 +25,6 @@ class LevelFilter {
   // square of `count`.
   void take(double mean, double blocks, const Vector& keep, double count, double most_squares) noexcept;
 
-  [[nodiscard]] const Ratios& ratios() const noexcept { return ratios_; }
   // Innovation of the last mean, and its variance in units of the white noise.
   [[nodiscard]] double innovation() const noexcept { return innovation_; }
   [[nodiscard]] double total() const noexcept { return total_; }

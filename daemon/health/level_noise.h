@@ -34,10 +34,6 @@ class LevelNoise {
   void forget_level() noexcept { has_level_ = false; }
   [[nodiscard]] double level() const noexcept;
   [[nodiscard]] double blocks() const noexcept { return count_; }
-  // In units of the white noise of a block mean: variance per decade of the bias instability; variance of the
-  // walk's step per block.
-  [[nodiscard]] double instability() const noexcept { return filters_[chosen_].ratios().instability; }
-  [[nodiscard]] double walk() const noexcept { return filters_[chosen_].ratios().walk; }
 
  private:
   void innovate(double squares) noexcept;

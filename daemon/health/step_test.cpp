@@ -18,6 +18,7 @@ constexpr double kBelieved = 100.0;
 constexpr double kNewestWeighs = 2.0, kKnownAs = 0.75;
 // Smaller values are ignored.
 constexpr double kLeastOfNote = 2.5;
+constexpr double kFar = 1e9;
 
 // Squared sum / its variance, converted from known degrees of freedom. The variance is that of white
 // innovations, or more if the level's noise is not in the table, or less if the filter assumes a too fast
@@ -28,8 +29,7 @@ double as_of_known_variance(double square, double mean_square, double independen
   return known_by * std::log1p(square / (kBelieved + independent * mean_square));
 }
 
-}  // namespace
-
+// Mean number of new excesses of |z| > 1 per block; s: 1 - correlation of neighbours, in (0, 1].
 double exceeded_per_block(double z, double s) {
   const double x = z * std::sqrt(2.0 * s);
   const double nu =
@@ -37,10 +37,7 @@ double exceeded_per_block(double z, double s) {
   return 2.0 * z * density(z) * s * nu;
 }
 
-void StepTest::restart() noexcept {
-  begun_ = 0;
-  nearest_ = kFar;
-}
+}  // namespace
 
 void StepTest::forget() noexcept {
   restart();
@@ -77,7 +74,6 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
   double nearest = kFar;
   for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i)
     nearest = std::min(nearest, look(i));
-  nearest_ = std::min(nearest_, nearest);
   if (nearest >= 1.0) {
     // A step must not change the noise by which the next one is tested.
     for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {

@@ -18,25 +18,16 @@
 
 namespace ifog {
 
-// Mean number of new excesses of |z| per block; s: 1 - correlation of neighbours, in (0, 1]. z > 1.
-[[nodiscard]] double exceeded_per_block(double z, double s);
-
 class StepTest {
  public:
-  // In blocks. The longest leaves one of ten minutes for a step within a block.
-  static constexpr std::array<std::size_t, 7> kLengths{1, 2, 4, 8, 15, 30, 58};
-  static constexpr std::array<double, 7> kShares{0.01, 0.01, 0.01, 0.01, 0.02, 0.04, 0.9};
-
   // Mean number of blocks between false alarms.
   explicit StepTest(double blocks_between_alarms) : alarms_per_block_(1.0 / blocks_between_alarms) {}
   // True: a step is found, and the test restarts.
   bool take(const LevelNoise::Innovation& innovation) noexcept;
   // Last step found, in the unit of the means.
   [[nodiscard]] double step() const noexcept { return step_; }
-  // Smallest share of false alarms since restart(); 1 or less is an alarm.
-  [[nodiscard]] double nearest() const noexcept { return nearest_; }
   // Starts new windows; keeps the variance of sums.
-  void restart() noexcept;
+  void restart() noexcept { begun_ = 0; }
   // Also forgets the variance of sums.
   void forget() noexcept;
 
@@ -49,13 +40,15 @@ class StepTest {
   struct Spread {
     double mean_square = 1.0, count = 0.0, latest = 0.0;
   };
-  static constexpr double kFar = 1e9;
+  // In blocks. The longest leaves one of ten minutes for a step within a block.
+  static constexpr std::array<std::size_t, 7> kLengths{1, 2, 4, 8, 15, 30, 58};
+  static constexpr std::array<double, 7> kShares{0.01, 0.01, 0.01, 0.01, 0.02, 0.04, 0.9};
   static constexpr std::size_t kLongest = kLengths.back();
   static void extend(Window& window, const LevelNoise::Innovation& innovation) noexcept;
   double look(std::size_t number) noexcept;
   [[nodiscard]] double likeliest(std::size_t in_use) const noexcept;
 
-  double alarms_per_block_, step_ = 0.0, nearest_ = kFar;
+  double alarms_per_block_, step_ = 0.0;
   std::array<Window, kLongest> windows_{};  // by the number of their first block, modulo
   std::array<Spread, kLengths.size()> spreads_{};
   std::size_t begun_ = 0;  // total number

@@ -33,10 +33,10 @@ void attach(const std::string& path, bool of_state, std::size_t& room, FlightHea
 // For a log that can be read in advance; a FIFO cannot.
 std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
   std::error_code error;
-  if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))
+  if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.file.path, error))
     return transport.interface;
   try {
-    return first_interface(InputFile(transport.path).head(),
+    return first_interface(InputFile(transport.file.path).head(),
                            [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); });
   } catch (const std::runtime_error&) {
     return {};
@@ -58,7 +58,7 @@ std::string source_of(const TransportConfig& transport) {
     case TransportConfig::Kind::file:
       break;
   }
-  return transport.path;
+  return transport.file.path;
 }
 
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
@@ -68,7 +68,8 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   out.sensor = sensor.name;
   const TransportConfig& transport = sensor.transport;
   const bool can = transport.kind == TransportConfig::Kind::can ||
-                   (transport.kind == TransportConfig::Kind::file && transport.candump);
+                   (transport.kind == TransportConfig::Kind::file &&
+                    transport.file.format == FileSettings::Format::candump);
   out.carries = can ? FlightHeader::Carries::can : FlightHeader::Carries::bytes;
   out.source = source_of(transport);
   if (can) out.interface = interface_of(transport, driver);

@@ -81,20 +81,14 @@ std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const Drive
 
 std::unique_ptr<Transport> file_transport(const SensorConfig& sensor, const DriverInstance& driver) {
   const TransportConfig& config = sensor.transport;
-  if (config.candump)
+  const bool candump = config.file.format == FileSettings::Format::candump;
+  if (candump)
     require(driver.takes_can(), sensor, "file (candump)", "bytes");
   else
     require(driver.takes_bytes(), sensor, "file (bytes)", "CAN frames: format = \"candump\"");
-  FileSettings settings;
-  settings.path = config.path;
-  settings.format = config.candump ? FileSettings::Format::candump : FileSettings::Format::bytes;
-  settings.pace = config.recorded ? FileSettings::Pace::recorded : FileSettings::Pace::free;
-  settings.speed = config.speed;
-  settings.bytes_per_second = config.bytes_per_second;
-  settings.block_bytes = config.block_bytes;
-  settings.await_writer = config.await_writer;
+  FileSettings settings = config.file;
   settings.interface = config.interface;
-  if (config.candump) settings.ids = wanted_ids(driver.description());
+  if (candump) settings.ids = wanted_ids(driver.description());
   return make_file_transport(settings);
 }
 

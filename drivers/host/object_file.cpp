@@ -12,29 +12,15 @@
 #include <filesystem>
 #include <system_error>
 
+#include "drivers/system/fd.h"
+
 namespace ifog {
 namespace {
 
-class OpenFile {
- public:
-  // Non-blocking: a FIFO is rejected without waiting.
-  explicit OpenFile(const std::string& path)
-      : fd_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
-  ~OpenFile() {
-    if (fd_ >= 0) close(fd_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  [[nodiscard]] int fd() const { return fd_; }
-
-  template <typename Header>
-  bool read_at(std::uint64_t offset, Header& out) const {
-    return pread(fd_, &out, sizeof out, static_cast<off_t>(offset)) == static_cast<ssize_t>(sizeof out);
-  }
-
- private:
-  int fd_;
-};
+template <typename Header>
+bool read_at(int fd, std::uint64_t offset, Header& out) {
+  return pread(fd, &out, sizeof out, static_cast<off_t>(offset)) == static_cast<ssize_t>(sizeof out);
+}
 
 std::string who_may_write(const std::string& path, const struct stat& info) {
   if ((info.st_mode & S_IWOTH) != 0)
@@ -48,15 +34,15 @@ std::string who_may_write(const std::string& path, const struct stat& info) {
   return "";
 }
 
-bool whole(const OpenFile& file, std::uint64_t size) {
+bool whole(int file, std::uint64_t size) {
   ElfW(Ehdr) header{};
   constexpr unsigned char kClass = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
-  if (!file.read_at(0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
+  if (!read_at(file, 0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
       header.e_ident[EI_CLASS] != kClass || header.e_phentsize != sizeof(ElfW(Phdr)))
     return true;
   for (unsigned i = 0; i < header.e_phnum; ++i) {
     ElfW(Phdr) segment{};
-    if (!file.read_at(header.e_phoff + std::uint64_t{i} * sizeof segment, segment)) return false;
+    if (!read_at(file, header.e_phoff + std::uint64_t{i} * sizeof segment, segment)) return false;
     if (segment.p_type != PT_LOAD) continue;
     if (segment.p_offset > size || segment.p_filesz > size - segment.p_offset) return false;
   }
@@ -66,10 +52,10 @@ bool whole(const OpenFile& file, std::uint64_t size) {
 }  // namespace
 
 std::string object_flaw(const std::string& path) {
-  const OpenFile file(path);
+  // Non-blocking: a FIFO is rejected without waiting.
+  const Fd file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
   struct stat info {};
-  if (file.fd() < 0 || fstat(file.fd(), &info) != 0)
-    return "cannot load: " + std::generic_category().message(errno);
+  if (file < 0 || fstat(file, &info) != 0) return "cannot load: " + std::generic_category().message(errno);
   if (!S_ISREG(info.st_mode)) return "is no regular file";
   if (std::string flaw = who_may_write(path, info); !flaw.empty()) return flaw;
   if (!whole(file, static_cast<std::uint64_t>(info.st_size)))

@@ -42,6 +42,8 @@ struct Delivery {
 struct CanId {
   std::uint32_t id = 0;
   bool extended = false;
+
+  bool operator==(const CanId&) const = default;
 };
 
 // A device cannot be opened: one line with the device, the system's reason and what was expected.

@@ -25,7 +25,7 @@ constexpr std::size_t kFewestTimes = 8;
 // Cells with fewer coefficients are not divided into quarters.
 constexpr double kParted = 32.0;
 // Departure in standard deviations that the noise of one octave reaches in fewer than one of 2000 records,
-// over all stretches (simulated, tests/bench/allan).
+// over all stretches (simulated).
 constexpr double kSurely = 5.2;
 // Smaller changes of the deviation do not matter.
 constexpr double kMaterial = 1.25;

@@ -28,8 +28,8 @@ struct NoiseChange {
 };
 
 // Changes of the noise level in order of time, at most the three most significant. Empty if the level changes
-// by less than a quarter or the record has only some hundred samples. False alarms: less than 1 % of records
-// (tests/bench/allan). parts: at rest and without NaN; time_s: time of a sample.
+// by less than a quarter or the record has only some hundred samples. False alarms: less than 1 % of
+// simulated records. parts: at rest and without NaN; time_s: time of a sample.
 [[nodiscard]] std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps,
                                                      std::span<const Stretch> parts, double period_s,
                                                      const std::function<double(std::size_t)>& time_s);

@@ -29,11 +29,13 @@ struct FileSettings {
   // candump: only this interface; empty: all, until frames of one id come on two, which is the end.
   std::string interface;
   std::vector<CanId> ids;  // candump: only frames of these ids; empty: all
+
+  bool operator==(const FileSettings&) const = default;
 };
 
 // Arrival times: a candump log's own, at recorded pace shifted so that the first frame is now. For bytes, and
 // lines without a time: the time of the read, or for bytes the time of opening plus bytes / bytes_per_second
-// if given. .gz is read through zlib. Throws std::runtime_error for contradictory settings.
+// if given. .gz is read through zlib. The settings are checked where they are read (daemon/config).
 std::unique_ptr<Transport> make_file_transport(FileSettings settings);
 
 }  // namespace ifog

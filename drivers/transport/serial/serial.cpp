@@ -12,7 +12,6 @@
 #include <array>
 #include <cerrno>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 namespace ifog {
@@ -196,16 +195,6 @@ void SerialTransport::count_losses() noexcept {
 }  // namespace
 
 std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings, SerialOpener open_port) {
-  const auto refuse = [&](const std::string& what) {
-    throw std::runtime_error((settings.device.empty() ? "serial transport" : settings.device) + ": " + what);
-  };
-  if (settings.device.empty()) refuse("no device, expected a serial device such as /dev/ttyUSB0");
-  if (settings.baud < 50 || settings.baud > 20'000'000)
-    refuse("baud is " + std::to_string(settings.baud) + ", expected 50 to 20000000");
-  if (settings.data_bits < 5 || settings.data_bits > 8)
-    refuse("data_bits is " + std::to_string(settings.data_bits) + ", expected 5 to 8");
-  if (settings.stop_bits < 1 || settings.stop_bits > 2)
-    refuse("stop_bits is " + std::to_string(settings.stop_bits) + ", expected 1 or 2");
   return std::make_unique<SerialTransport>(settings, std::move(open_port));
 }
 

@@ -13,8 +13,7 @@ namespace ifog {
 // framing and parity errors and breaks as error frames, if the driver reports them (TIOCGICOUNT): ten times a
 // second, at a hang-up and after the last read. With `set_up` the device is set up whenever the line opens,
 // and after a silence of more than a second (power may have been off). A wrong or missing answer counts as a
-// failed opening. `open_port` is for tests, as libserialport accepts no pseudo terminal. Throws
-// std::runtime_error for invalid settings.
+// failed opening. `open_port` is for tests, as libserialport accepts no pseudo terminal.
 std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings,
                                                  SerialOpener open_port = open_serial_port);
 

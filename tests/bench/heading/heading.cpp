@@ -17,6 +17,8 @@
 
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
+#include "tests/unit/daemon/chain_behind.h"
+#include "tests/unit/daemon/kvh_frames.h"
 
 namespace {
 
@@ -24,8 +26,8 @@ using namespace ifog;
 using namespace std::chrono_literals;
 
 constexpr double kRate_hz = 5000.0;
-constexpr double kUnit_radps = 1.0 / (1 << 20);    // float32 holds its multiples up to 16 rad/s exactly
-constexpr std::size_t kFrame = 36, kPortion = 64;  // bytes per frame, frames per delivery
+constexpr double kUnit_radps = 1.0 / (1 << 20);  // float32 holds its multiples up to 16 rad/s exactly
+constexpr std::size_t kPortion = 64;             // frames per delivery
 constexpr std::size_t kSlots = 1024;
 constexpr int kBlock = 128 * 512;                // frames, repeated: 13 s
 constexpr std::uint64_t kCalm = 100'000;         // frames between two overloads: 20 s
@@ -53,23 +55,14 @@ struct Block {
 };
 
 Block make_block() {
-  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
   Block block;
   for (auto& sums : block.sums) sums.push_back(0);
-  for (int n = 0; n < kBlock; ++n) {
-    ifog_sample sample{};
-    sample.flags = IFOG_SAMPLE_SEQUENCE;
-    sample.sequence = static_cast<std::uint32_t>(n % 128);
-    sample.valid_axes = 7;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const int value = units(n, axis);
-      sample.value[a] = value * kUnit_radps;
-      block.sums[a].push_back(block.sums[a].back() + value);
-    }
-    sample.environment_fresh = ~0U;
-    driver.encode_bytes(sample, block.bytes);
-  }
+  block.bytes = kvh_frames(0, kBlock, [&](int n, int axis) {
+    auto& sums = block.sums[static_cast<std::size_t>(axis)];
+    const int value = units(n, axis);
+    sums.push_back(sums.back() + value);
+    return value * kUnit_radps;
+  });
   return block;
 }
 
@@ -131,18 +124,11 @@ struct Sensor {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
     plan.lcm_channel = "IFOG_DAY";
-    plan.facts = sensor_facts(driver.description(), kRate_hz, 0);
+    chain = chain_behind(driver, kRate_hz, 1e-8, 1e-8);
+    plan.facts = chain.facts;
     plan.ring_slots = kSlots;
     plan.reader.name = "read";
     plan.filter.name = "filter";
-    chain.facts = plan.facts;
-    chain.axes = {"x", "y", "z"};
-    for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
-      chain.channels.emplace_back(driver.description().environment[i]);
-      chain.channel_max_age_s.push_back(0.0);
-    }
-    chain.filter.process_noise = 1e-8;
-    chain.filter.measurement_noise = 1e-8;
     auto day = std::make_unique<DayTransport>(block, frames);
     auto summing = std::make_unique<SummingPublisher>();
     DayTransport* const transport = day.get();

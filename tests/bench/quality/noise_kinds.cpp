@@ -9,9 +9,8 @@ namespace {
 
 template <typename Draw>
 Noise independent(std::size_t samples, Draw draw) {
-  Noise noise;
-  noise.value.resize(samples);
-  for (double& value : noise.value) value = draw();
+  Noise noise(samples);
+  for (double& value : noise) value = draw();
   return noise;
 }
 
@@ -42,39 +41,30 @@ Noise bimodal_noise(Random& random, std::size_t samples) {
 Noise missing_noise(Random& random, std::size_t samples, double share) {
   Noise noise = gaussian_noise(random, samples);
   std::bernoulli_distribution missing(share);
-  for (double& value : noise.value)
+  for (double& value : noise)
     if (missing(random)) value = std::numeric_limits<double>::quiet_NaN();
   return noise;
 }
 
 Noise outlier_noise(Random& random, std::size_t samples, double share, double size) {
   Noise noise = gaussian_noise(random, samples);
-  noise.variance.assign(samples, 1.0);
   std::bernoulli_distribution outlier(share), upwards;
-  for (std::size_t i = 0; i < samples; ++i) {
-    if (!outlier(random)) continue;
-    noise.value[i] += upwards(random) ? size : -size;
-    noise.variance[i] += size * size;
-  }
+  for (double& value : noise)
+    if (outlier(random)) value += upwards(random) ? size : -size;
   return noise;
 }
 
 Noise changing_noise(Random& random, std::size_t samples, std::size_t from, std::size_t turn, double factor) {
   Noise noise = gaussian_noise(random, samples);
-  noise.variance.assign(samples, 1.0);
-  for (std::size_t i = from; i < samples; ++i) {
-    if ((i - from) / turn % 2 == 1) continue;
-    noise.value[i] *= factor;
-    noise.variance[i] = factor * factor;
-  }
+  for (std::size_t i = from; i < samples; ++i)
+    if ((i - from) / turn % 2 == 0) noise[i] *= factor;
   return noise;
 }
 
 Noise coloured_noise(Random& random, std::size_t samples, double correlation) {
   Noise noise = gaussian_noise(random, samples);
   const double fresh = std::sqrt(1.0 - correlation * correlation);
-  for (std::size_t i = 1; i < samples; ++i)
-    noise.value[i] = correlation * noise.value[i - 1] + fresh * noise.value[i];
+  for (std::size_t i = 1; i < samples; ++i) noise[i] = correlation * noise[i - 1] + fresh * noise[i];
   return noise;
 }
 

@@ -11,10 +11,8 @@ namespace ifog::bench {
 
 using Random = std::mt19937_64;
 
-struct Noise {
-  std::vector<double> value;     // σ; NaN: missing
-  std::vector<double> variance;  // of each sample, σ²; empty: 1
-};
+// σ; NaN: missing.
+using Noise = std::vector<double>;
 
 Noise gaussian_noise(Random& random, std::size_t samples);
 // Student's t with three degrees of freedom: variance 3 before scaling, no fourth moment.

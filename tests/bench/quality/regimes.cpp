@@ -53,17 +53,16 @@ RegimeRecord compose(const Streams& streams, double ratio, std::size_t from, Noi
                      const std::vector<double>& motion) {
   RegimeRecord record;
   record.from = from;
-  record.truth.resize(noise.value.size());
-  record.measured.resize(noise.value.size());
+  record.truth.resize(noise.size());
+  record.measured.resize(noise.size());
   Random random = streams(kWalk);
   std::normal_distribution<double> step(0.0, std::sqrt(ratio));
   double walk = 0.0;
   for (std::size_t i = 0; i < record.truth.size(); ++i) {
     record.truth[i] = walk + (motion.empty() ? 0.0 : motion[i]);
-    record.measured[i] = record.truth[i] + noise.value[i];
+    record.measured[i] = record.truth[i] + noise[i];
     walk += step(random);
   }
-  record.noise_variance = std::move(noise.variance);
   return record;
 }
 
@@ -153,10 +152,8 @@ Regime started_moving(const std::string& name, bool given) {
             const Streams streams(name, ratio, seed);
             const std::size_t samples = kSwing + kMinute + lengths(ratio).started;
             Random of_noise = streams(kNoise), of_motion = streams(kMotion);
-            RegimeRecord record = compose(streams, ratio, kSwing + kMinute, gaussian_noise(of_noise, samples),
-                                          sway_that_ends(of_motion, samples, kSwing, 30.0, 0.02));
-            record.rest_from = kSwing;
-            return record;
+            return compose(streams, ratio, kSwing + kMinute, gaussian_noise(of_noise, samples),
+                           sway_that_ends(of_motion, samples, kSwing, 30.0, 0.02));
           }};
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,6 @@ struct RegimeRecord {
   std::vector<double> truth;     // σ
   std::vector<double> measured;  // σ; NaN: missing
   std::size_t from = 0;          // first judged sample; all later ones are judged
-  // Not given to the filter: the variance of each sample's noise (empty: 1), and the time after which there
-  // is only the random walk.
-  std::vector<double> noise_variance;
-  std::optional<std::size_t> rest_from;
 };
 
 struct Regime {

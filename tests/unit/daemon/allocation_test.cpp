@@ -8,12 +8,12 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 #include <thread>
 
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/file/file.h"
+#include "tests/unit/daemon/chain_behind.h"
 #include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/malloc_counter.h"
@@ -21,14 +21,6 @@
 
 namespace ifog {
 namespace {
-
-std::string recording(const test::OwnFolder& folder, int count) {
-  const std::vector<std::uint8_t> bytes = kvh_frames(0, count, [](int n) { return 0.01 + 1e-5 * (n % 17); });
-  std::string path = folder.path("gyro.kvh");
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  return path;
-}
 
 TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   if (!test::allocations_can_be_counted())
@@ -38,7 +30,8 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
     GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
   constexpr int kCount = 2000;
   const test::OwnFolder folder;
-  const std::string path = recording(folder, kCount);
+  const std::vector<std::uint8_t> bytes = kvh_frames(0, kCount, [](int n) { return 0.01 + 1e-5 * (n % 17); });
+  folder.write("gyro.kvh", {bytes.begin(), bytes.end()});
   DriverInstance driver = make_driver("kvh1750", {});
   // Recorded, too; the recorder thread, which may allocate, does not run here.
   Tape tape(1U << 20U);
@@ -50,20 +43,12 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
                {std::string(kInsType), "C"},
                {std::string(kMicrostrainType), "D"},
                {std::string(kKvhBatchType), "E"}};
-  plan.facts = sensor_facts(driver.description(), 1000.0, 0);
+  const ChainSettings chain = chain_behind(driver, 1000.0);
+  plan.facts = chain.facts;
   plan.reader.name = "read";
   plan.filter.name = "filter";
-  ChainSettings chain;
-  chain.facts = plan.facts;
-  chain.axes = {"x", "y", "z"};
-  chain.filter.process_noise = 1e-10;
-  chain.filter.measurement_noise = 1e-8;
-  for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
-    chain.channels.emplace_back(driver.description().environment[i]);
-    chain.channel_max_age_s.push_back(10.0);
-  }
   FileSettings file;
-  file.path = path;
+  file.path = folder.path("gyro.kvh");
   file.pace = FileSettings::Pace::recorded;
   file.bytes_per_second = 36.0 * 2000.0;
   file.block_bytes = 36;

@@ -48,7 +48,7 @@ scale = 1e-3
   ASSERT_EQ(config.sensors.size(), 1U);
   const SensorConfig& sensor = config.sensors[0];
   EXPECT_EQ(sensor.lcm_channel(), "IFOG_NOSE");
-  EXPECT_EQ(sensor.transport.path, "/etc/ifogd/a.kvh");  // relative to the configuration
+  EXPECT_EQ(sensor.transport.file.path, "/etc/ifogd/a.kvh");  // relative to the configuration
   EXPECT_EQ(sensor.options.at("rate_hz"), "962.5");
   EXPECT_EQ(sensor.options.at("format"), "b");
   EXPECT_EQ(sensor.filter.rule, "ckf");
@@ -127,6 +127,8 @@ TEST(Config, NamesWhereAndWhat) {
            {"speed = \"fast\"\n", "8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
            {"speed = -1\n", "8: sensor.transport.speed = -1: "},
            {"pace = \"slow\"\n", "8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
+           {"pace = \"recorded\"\n", "8: sensor.transport.pace = \"recorded\": raw bytes carry no times"},
+           {"bytes_per_second = -1.0\n", "8: sensor.transport.bytes_per_second = -1: "},
            {"interface = \"\"\n", "8: sensor.transport.interface = '': "},
            {"await_writer = 1\n", "8: sensor.transport.await_writer = 1: "},
            {"block_bytes = 65537\n", "8: sensor.transport.block_bytes = 65537: "},
@@ -143,6 +145,7 @@ TEST(Config, NamesWhereAndWhat) {
            {std::string(kSerial) + "set_up = [\"=CONFIG,1\", \"DR\"]\n",
             "14: sensor.transport.set_up = ['DR']: "},
            {std::string(kSerial) + "parity = \"mark\"\n", "14: sensor.transport.parity = 'mark': "},
+           {std::string(kSerial) + "baud = 49\n", "14: sensor.transport.baud = 49: "},
            {std::string(kSerial) + "data_bits = 9\n", "14: sensor.transport.data_bits = 9: "},
            {std::string(kSerial) + "stop_bits = 0\n", "14: sensor.transport.stop_bits = 0: "},
            {"[[sensor.publish]]\nchannel = \"A\"\n", "8: sensor.publish.type: missing; expected "},

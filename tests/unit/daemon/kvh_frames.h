@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
@@ -12,11 +13,11 @@ namespace ifog {
 
 inline constexpr std::size_t kFrame = 36;  // bytes
 
-// Numbers of the samples `first` … `first + count - 1`: every axis has the rate of its number, rad/s, and every
-// channel the temperature.
-inline std::vector<std::uint8_t> kvh_frames(int first, int count,
-                                            const std::function<double(int)>& rate_radps,
-                                            const std::function<double(int)>& temperature_degC = {}) {
+// Numbers of the samples `first` … `first + count - 1`: every axis has the rate of its number, rad/s, or of its number
+// and its axis, and every channel the temperature.
+template <typename Rate>
+std::vector<std::uint8_t> kvh_frames(int first, int count, Rate&& rate_radps,
+                                     const std::function<double(int)>& temperature_degC = {}) {
   DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
   std::vector<std::uint8_t> out;
   for (int n = first; n < first + count; ++n) {
@@ -24,7 +25,11 @@ inline std::vector<std::uint8_t> kvh_frames(int first, int count,
     sample.flags = IFOG_SAMPLE_SEQUENCE;
     sample.sequence = static_cast<std::uint32_t>(n % 128);
     sample.valid_axes = 7;
-    for (double& value : sample.value) value = rate_radps(n);
+    for (int axis = 0; axis < 3; ++axis)
+      if constexpr (std::is_invocable_v<Rate, int, int>)
+        sample.value[axis] = rate_radps(n, axis);
+      else
+        sample.value[axis] = rate_radps(n);
     for (double& value : sample.environment) value = temperature_degC ? temperature_degC(n) : 0.0;
     sample.environment_fresh = ~0U;
     driver.encode_bytes(sample, out);

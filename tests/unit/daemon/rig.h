@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "daemon/pipeline/pipeline.h"
+#include "tests/unit/daemon/chain_behind.h"
 #include "tests/unit/daemon/kvh_frames.h"
 
 namespace ifog {
@@ -116,20 +117,13 @@ struct Rig {
     PipelinePlan plan;
     plan.lcm_channel = "IFOG_TEST";
     plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"}};
-    plan.facts = sensor_facts(driver.description(), 1000.0, 0);
+    chain = chain_behind(driver, 1000.0);
+    plan.facts = chain.facts;
     plan.ring_slots = slots;
     plan.direct = direct;
     plan.tape = tape;
     plan.reader.name = "read";
     plan.filter.name = "filter";
-    chain.facts = plan.facts;
-    chain.axes = {"x", "y", "z"};
-    for (std::uint32_t i = 0; i < driver.description().environments; ++i) {
-      chain.channels.emplace_back(driver.description().environment[i]);
-      chain.channel_max_age_s.push_back(10.0);
-    }
-    chain.filter.process_noise = 1e-10;
-    chain.filter.measurement_noise = 1e-8;
     auto memory = std::make_unique<MemoryTransport>(std::move(bytes), portion, holds_back);
     transport = memory.get();
     auto keeping = std::make_unique<KeepingPublisher>(pause);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -18,10 +19,18 @@
 
 namespace ifog {
 
-// What all sensors publish, the latest of each.
+// What sensors publish: the latest status of each, and every sample of the sensor "nose".
 class Listener {
  public:
   Listener() : lcm_(lcm_create(kUrl)) {
+    lcm_subscription_t* const samples = lcm_subscribe(
+        lcm_, "IFOG_NOSE",
+        [](const lcm_recv_buf_t* buffer, const char*, void* user) {
+          auto* const self = static_cast<Listener*>(user);
+          ASSERT_TRUE(decode_message(buffer->data, buffer->data_size, self->rates.emplace_back()));
+        },
+        this);
+    lcm_subscription_set_queue_capacity(samples, 100'000);
     lcm_subscribe(
         lcm_, "IFOG_.*_STATUS",
         [](const lcm_recv_buf_t* buffer, const char* channel, void* user) {
@@ -36,7 +45,7 @@ class Listener {
   Listener& operator=(const Listener&) = delete;
   void listen(int milliseconds) {
     pollfd wanted{lcm_get_fileno(lcm_), POLLIN, 0};
-    if (poll(&wanted, 1, milliseconds) > 0) lcm_handle(lcm_);
+    while (poll(&wanted, 1, milliseconds) > 0 && lcm_handle(lcm_) == 0) milliseconds = 0;
   }
   // The latest value of a sensor's channel; NaN before the first.
   double channel(const std::string& sensor, const std::string& name) {
@@ -49,6 +58,7 @@ class Listener {
   void send(const char* channel, const std::vector<std::uint8_t>& message) {
     lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size()));
   }
+  std::vector<rate_t> rates;
   std::map<std::string, status_t> last;
   std::map<std::string, int> heard;
 
@@ -66,12 +76,15 @@ class RunningDaemon : public DaemonProcess {
     DaemonProcess::TearDown();
     for (const auto& [name, fifo] : fifos_) close(fifo);
   }
+  // The writing end of the FIFO of that name.
+  int fifo(const std::string& name) {
+    if (fifos_.contains(name)) return fifos_[name];
+    EXPECT_EQ(mkfifo(path(name).c_str(), 0600), 0);
+    return fifos_[name] = open(path(name).c_str(), O_RDWR | O_CLOEXEC);
+  }
   // A sensor that reads a FIFO, whose writing end this test holds.
   std::string sensor(const std::string& name, const std::string& more = "") {
-    if (!fs::exists(path(name))) {
-      EXPECT_EQ(mkfifo(path(name).c_str(), 0600), 0);
-      fifos_[name] = open(path(name).c_str(), O_RDWR | O_CLOEXEC);
-    }
+    (void)fifo(name);
     return "[[sensor]]\nname = \"" + name + "\"\ndriver = \"kvh1750\"\n" + more +
            "[sensor.transport]\ntype = \"file\"\npath = \"" + name +
            "\"\n[sensor.filter]\n"
@@ -80,7 +93,8 @@ class RunningDaemon : public DaemonProcess {
   // Generous: only a test that fails waits so long.
   template <typename Condition>
   bool await(Condition&& condition) {
-    for (int n = 0; n < 600; ++n) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (std::chrono::steady_clock::now() < until) {
       if (condition()) return true;
       listener_->listen(50);
     }

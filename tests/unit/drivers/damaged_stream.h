@@ -1,60 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream of frames of which some are damaged in every way a line can, and the proof that a finder of frames
-// takes every intact one out of it, with its own last byte, however the stream is cut into portions.
+// A stream of frames of which some are damaged in every way a line can, and the proof that a finder of frames takes every
+// intact one out of it, with its own last byte, however the stream is cut into portions.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <random>
 #include <span>
 #include <vector>
+
+#include "drivers/plugins/framing/frame_finder.h"
 
 namespace ifog {
 
 using Bytes = std::vector<std::uint8_t>;
 using Random = std::mt19937;
 
-// What a test knows of its protocol by itself.
-struct Frames {
-  std::function<Bytes(Random&)> frame;   // any intact frame
-  std::function<Bytes(Random&)> header;  // the beginning of one, whatever it announces
-  // The length of the intact frame that these bytes begin with; 0: none. Nothing shared with the code under
-  // test.
-  std::function<std::size_t(std::span<const std::uint8_t>)> length;
-};
-
 class DamagedStream {
  public:
-  DamagedStream(const Frames& frames, std::uint32_t seed, int segments) : frames_(frames), random_(seed) {
+  DamagedStream(const std::vector<Bytes>& frames, std::uint32_t seed, int segments)
+      : frames_(frames), random_(seed) {
     for (int i = 0; i < segments; ++i) segment();
-    put(frames_.frame(random_));
+    put(frame());
   }
   Bytes bytes;
 
  private:
   std::size_t below(std::size_t n) { return random_() % n; }
   std::uint8_t byte() { return static_cast<std::uint8_t>(below(256)); }
+  const Bytes& frame() { return frames_[below(frames_.size())]; }
   void put(const Bytes& more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
-  void cut() {
-    Bytes f = frames_.frame(random_);
-    f.resize(below(f.size()));
+  void cut(std::size_t most) {
+    Bytes f = frame();
+    f.resize(below(std::min(f.size(), most)));
     put(f);
   }
+  // Among it the beginnings of frames.
   void noise() {
     for (std::size_t n = below(60); n > 0; --n) {
-      if (below(10) == 0) put(frames_.header(random_));
+      if (below(10) == 0) cut(28);
       bytes.push_back(byte());
     }
   }
   void segment() {
-    Bytes f = frames_.frame(random_);
+    Bytes f = frame();
     const std::size_t kind = below(8), times = 1 + below(4);
-    if (kind == 3) return cut();
+    if (kind == 3) return cut(f.size());
     if (kind == 4) return noise();
-    if (kind == 5) return cut(), put(f);  // a frame whose tail an intact one has written over
+    if (kind == 5) return cut(f.size()), put(f);  // a frame whose tail an intact one has written over
     for (std::size_t n = 0; n < times; ++n) {
       if (kind == 0) f[below(f.size())] ^= static_cast<std::uint8_t>(1 + below(255));
       if (kind == 1) f.insert(f.begin() + static_cast<std::ptrdiff_t>(1 + below(f.size() - 1)), byte());
@@ -63,25 +58,38 @@ class DamagedStream {
     put(f);
   }
 
-  const Frames& frames_;
+  const std::vector<Bytes>& frames_;
   Random random_;
 };
 
-// `Finder` as drivers/plugins/framing/frame_finder.h, `make` makes one. What is intact is found by trying
-// every position; damage can by chance leave a frame whole.
-template <typename Make>
-void every_intact_frame_comes_out(const Frames& frames, int seeds, Make&& make) {
+// frames: intact ones, made by a test from what it knows of the protocol. Each must be one to the protocol, and none with
+// a changed byte. What is intact in the stream is found by asking the protocol at every position; damage can by chance
+// leave a frame whole.
+template <typename Protocol>
+void every_intact_frame_comes_out(const std::vector<Bytes>& frames, int seeds, const Protocol& protocol) {
+  using Finder = framing::FrameFinder<Protocol>;
   struct Placed {
     std::size_t end;
     Bytes bytes;
     bool operator==(const Placed&) const = default;
   };
+  const auto length = [&](std::span<const std::uint8_t> bytes) -> std::size_t {
+    const framing::Announced announced = protocol.at(bytes);
+    const bool whole = announced.is == framing::Announced::Is::frame && announced.length <= bytes.size();
+    return whole && protocol.intact(bytes.first(announced.length)) ? announced.length : 0;
+  };
+  Random changes(1);
+  for (Bytes frame : frames) {
+    ASSERT_EQ(length(frame), frame.size());
+    frame[changes() % frame.size()] ^= static_cast<std::uint8_t>(1 + changes() % 255);
+    EXPECT_NE(length(frame), frame.size());
+  }
   for (int seed = 1; seed <= seeds; ++seed) {
     const Bytes stream = DamagedStream(frames, static_cast<std::uint32_t>(seed), 60).bytes;
     std::vector<Placed> present;
     std::size_t framed = 0;
     for (std::size_t at = 0; at < stream.size();) {
-      const std::size_t n = frames.length(std::span(stream).subspan(at));
+      const std::size_t n = length(std::span(stream).subspan(at));
       if (n != 0) {
         const auto begin = stream.begin() + static_cast<std::ptrdiff_t>(at);
         present.push_back({at + n, {begin, begin + static_cast<std::ptrdiff_t>(n)}});
@@ -89,7 +97,7 @@ void every_intact_frame_comes_out(const Frames& frames, int seeds, Make&& make) 
       framed += n;
       at += n == 0 ? 1 : n;
     }
-    auto single = make();
+    Finder single(protocol);
     std::vector<Placed> found;
     for (std::size_t i = 0; i < stream.size(); ++i)
       single.feed({&stream[i], 1}, [&](std::span<const std::uint8_t> f) {
@@ -101,7 +109,7 @@ void every_intact_frame_comes_out(const Frames& frames, int seeds, Make&& make) 
     EXPECT_EQ(single.counters().bytes_framed, framed);
     EXPECT_EQ(framed + single.counters().bytes_skipped + single.waiting(), stream.size()) << "seed " << seed;
 
-    auto portions = make();
+    Finder portions(protocol);
     Random random(static_cast<std::uint32_t>(seed) + 1'000'000);
     std::size_t count = 0;
     for (std::size_t i = 0; i < stream.size();) {

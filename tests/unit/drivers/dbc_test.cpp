@@ -50,27 +50,6 @@ std::uint64_t by_definition(const Signal& s, const std::array<std::uint8_t, 64>&
   return value;
 }
 
-TEST(DbcCodec, LayoutsWorkedOutByHand) {
-  const std::array<std::uint8_t, 8> data{0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC, 0xDE, 0xF0};
-  const auto little = [&](std::uint32_t start, std::uint32_t length) {
-    return raw_bits(laid_out(start, length, ByteOrder::kLittle, ValueType::kUnsigned), data);
-  };
-  const auto big = [&](std::uint32_t start, std::uint32_t length) {
-    return raw_bits(laid_out(start, length, ByteOrder::kBig, ValueType::kUnsigned), data);
-  };
-  EXPECT_EQ(little(0, 16), 0x3412U);
-  EXPECT_EQ(little(4, 12), 0x341U);  // upper nibble of byte 0, then byte 1
-  EXPECT_EQ(little(12, 8), 0x63U);   // across the bytes 1 and 2
-  EXPECT_EQ(little(0, 64), 0xF0DEBC9A78563412U);
-  EXPECT_EQ(big(7, 16), 0x1234U);
-  EXPECT_EQ(big(3, 12), 0x234U);  // lower nibble of byte 0, then byte 1
-  EXPECT_EQ(big(11, 8), 0x45U);   // across the bytes 1 and 2
-  EXPECT_EQ(big(7, 64), 0x123456789ABCDEF0U);
-  EXPECT_EQ(big(0, 2), 0x0U);   // last bit of byte 0 (0), first of byte 1 (0)
-  EXPECT_EQ(big(8, 2), 0x0U);   // last bit of byte 1 (0), first of byte 2 (0)
-  EXPECT_EQ(big(14, 3), 0x3U);  // 0x34: bits 6, 5, 4 are 0, 1, 1
-}
-
 TEST(DbcCodec, SignedAndFloatingValues) {
   const std::array<std::uint8_t, 8> data{0xFE, 0xFF, 0xC0, 0x20, 0x00, 0x00, 0x00, 0x08};
   EXPECT_EQ(physical(laid_out(0, 16, ByteOrder::kLittle, ValueType::kSigned), 0xFFFE), -2.0);

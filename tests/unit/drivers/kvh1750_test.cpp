@@ -3,7 +3,6 @@
 // by hand from the maker's description, the CRC by the bit-serial definition.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -128,34 +127,25 @@ TEST(Kvh1750, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
 // Every intact frame is recovered from a damaged stream.
 
 TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStream) {
-  ifog::Frames frames;
-  frames.header = [](ifog::Random& random) {
-    return ifog::Bytes{0xFE, 0x81, 0xFF, static_cast<std::uint8_t>(0x55 + random() % 3)};
-  };
-  frames.frame = [&](ifog::Random& random) {
-    ifog::Bytes out = frames.header(random);
-    const std::size_t covered = out[3] == 0x55 ? 32 : out[3] == 0x56 ? 36 : 34;
-    while (out.size() < covered) {
+  ifog::Random random(9);
+  std::vector<ifog::Bytes> frames(200);
+  for (ifog::Bytes& frame : frames) {
+    const auto header = [&] {
+      const ifog::Bytes out{0xFE, 0x81, 0xFF, static_cast<std::uint8_t>(0x55 + random() % 3)};
+      frame.insert(frame.end(), out.begin(), out.end());
+    };
+    header();
+    const std::size_t covered = frame[3] == 0x55 ? 32 : frame[3] == 0x56 ? 36 : 34;
+    while (frame.size() < covered) {
       // One payload in four holds a header.
-      if (out.size() + 4 <= covered && random() % 32 == 0) {
-        const ifog::Bytes header = frames.header(random);
-        out.insert(out.end(), header.begin(), header.end());
-      } else {
-        out.push_back(static_cast<std::uint8_t>(random() % 256));
-      }
+      if (frame.size() + 4 <= covered && random() % 32 == 0)
+        header();
+      else
+        frame.push_back(static_cast<std::uint8_t>(random() % 256));
     }
-    ifog::append_crc32(out);
-    return out;
-  };
-  frames.length = [](std::span<const std::uint8_t> b) -> std::size_t {
-    if (b.size() < 36 || b[0] != 0xFE || b[1] != 0x81 || b[2] != 0xFF) return 0;
-    const std::size_t length = b[3] == 0x55 ? 36 : b[3] == 0x56 ? 40 : b[3] == 0x57 ? 38 : 0;
-    if (length == 0 || b.size() < length) return 0;
-    ifog::Bytes again(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(length) - 4);
-    ifog::append_crc32(again);
-    return std::equal(again.begin(), again.end(), b.begin()) ? length : 0;
-  };
-  every_intact_frame_comes_out(frames, 300, [] { return ifog::kvh::FrameFinder(); });
+    ifog::append_crc32(frame);
+  }
+  ifog::every_intact_frame_comes_out(frames, 300, ifog::kvh::Protocol{});
 }
 
 // ------------------------------------------------------------------------------------------------------------------

@@ -121,26 +121,6 @@ TEST(FlightArchive, AFileThatIsTakenAwayIsCountedAndTheNextGoesOn) {
   EXPECT_EQ(read.holes, std::vector<std::size_t>{left});
 }
 
-TEST(FlightArchive, WhatTheDiskDidNotTakeAtTheEndIsLost) {
-  Bench bench({});
-  bench.disk.refuses = ENOTDIR;
-  for (std::uint64_t n = 0; n < 12; ++n) {
-    bench.now_ns += kSecond;
-    bench.add(n);
-    bench.turn();
-  }
-  EXPECT_EQ(bench.archive.lost_at_close().deliveries, 0U);  // it waits
-  EXPECT_EQ(bench.archive.complaint(), "Not a directory (expected a folder that can be written)");
-  EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 12U);
-  EXPECT_EQ(bench.archive.lost_at_close().deliveries, 12U);
-  EXPECT_EQ(bench.archive.lost_at_close().bytes, [] {
-    std::uint64_t sum = 0;
-    for (std::uint64_t n = 0; n < 12; ++n) sum += numbered(n).size();
-    return sum;
-  }());
-  EXPECT_EQ(bench.archive.lost_with_files().deliveries, 0U);
-}
-
 // On a real disk: who comes second is refused, and has the folder once the first is gone.
 TEST(FlightArchive, OneRecorderAFolder) {
   const test::OwnFolder own;
@@ -197,24 +177,6 @@ TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {
   EXPECT_EQ(losses(read_back(all_of(disk)).counts),
             std::vector<std::string>{"88 messages are not in the recording: lost on LCM on the way to it, or "
                                      "the disk was slow or full"});
-}
-
-TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {
-  Bench bench({});
-  bench.disk.cuts_back = false;
-  for (std::uint64_t n = 0; n < 100; ++n) {
-    bench.now_ns += kSecond;
-    if (n == 50) bench.disk.room = bench.disk.used() + 40;
-    if (n == 80) bench.disk.room = UINT64_MAX;
-    bench.add(n);
-    bench.turn();
-  }
-  bench.archive.close(bench.now_ns, kWall);
-  const ReadBack read = read_back(all_of(bench.disk));
-  EXPECT_EQ(numbers(read), counting(0, 100));
-  EXPECT_EQ(read.counts.torn_bytes, 40U);
-  EXPECT_EQ(read.counts.open_files, 1U);
-  EXPECT_EQ(bench.disk.files.size(), 2U);
 }
 
 // The wall clock of a computer without a battery: 1970 at the start, right later. It removes nothing.

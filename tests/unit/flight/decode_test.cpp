@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 
+#include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/flight/recordings.h"
 
 namespace ifog {
@@ -25,17 +26,8 @@ struct Seen {
 struct Stream {
   std::vector<std::vector<std::uint8_t>> frames;
   explicit Stream(int count) {
-    DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
-    for (int n = 0; n < count; ++n) {
-      ifog_sample sample{};
-      sample.flags = IFOG_SAMPLE_SEQUENCE;
-      sample.sequence = static_cast<std::uint32_t>(n % 128);
-      sample.valid_axes = 7;
-      for (double& value : sample.value) value = 1e-3 * n;
-      for (double& value : sample.environment) value = 20.0;
-      sample.environment_fresh = ~0U;
-      driver.encode_bytes(sample, frames.emplace_back());
-    }
+    for (int n = 0; n < count; ++n)
+      frames.push_back(kvh_frames(n, 1, [](int number) { return 1e-3 * number; }));
   }
 };
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The format to the byte, by hand, against its description (drivers/flight/format.md).
 #include <gtest/gtest.h>
-#include <zlib.h>
-
-#include <random>
 
 #include "tests/unit/flight/recordings.h"
 #include "tests/unit/refusal.h"
@@ -117,27 +114,6 @@ TEST(FlightFormat, WhatIsWrittenIsWhatTheDescriptionSays) {
   written.clear();
   append_block(written, BlockType::header, {}, payload, deflater);
   EXPECT_EQ(written, block_by_hand(1, 0, 0, payload));
-}
-
-// By zlib's own call, which starts again for each.
-TEST(FlightFormat, EachBlockIsDeflatedByItself) {
-  std::mt19937 random(7);
-  Bytes noise(5000), half(5000);
-  for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
-  for (std::size_t i = 0; i < half.size(); i += 2) half[i] = static_cast<std::uint8_t>(random());
-  Deflater deflater;
-  for (const Bytes& content : {half, Bytes(300'000, 0x2A), noise, half, Bytes{}, Bytes{1, 2, 3}, half}) {
-    Bytes written, expected(compressBound(static_cast<uLong>(content.size())));
-    uLongf length = expected.size();
-    ASSERT_EQ(compress2(expected.data(), &length, content.data(), static_cast<uLong>(content.size()), 1),
-              Z_OK);
-    expected.resize(length);
-    const bool smaller = length < content.size();
-    append_block(written, BlockType::data, {99, 0}, content, deflater);
-    ASSERT_EQ(written.size(), kBlockHead + (smaller ? length : content.size()) + kBlockTail);
-    EXPECT_EQ(written[5], smaller ? 1 : 0);
-    EXPECT_EQ(Bytes(written.begin() + kBlockHead, written.end() - kBlockTail), smaller ? expected : content);
-  }
 }
 
 TEST(FlightFormat, AHeaderComesBackAsItWas) {

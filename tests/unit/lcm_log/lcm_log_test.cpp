@@ -74,24 +74,6 @@ class LcmLog : public testing::Test, protected test::OwnFolder {
   std::unique_ptr<lcm::LogFile> writer_;
 };
 
-TEST_F(LcmLog, TakesTheOnlyChannelWithRates) {
-  channel_t other{};
-  for (int n = 0; n < 5; ++n) {
-    add("IFOG_NOSE_STATUS", other);
-    add("IFOG_NOSE", sample(n, 3));
-    add("HULL", other);
-  }
-  finish();
-  const Capture capture = read("");
-  ASSERT_EQ(capture.time_s.size(), 5U);
-  EXPECT_EQ(capture.axes, (std::vector<std::string>{"x", "y", "z"}));
-  for (std::size_t n = 0; n < 5; ++n) {
-    EXPECT_NEAR(capture.time_s[n], 0.001 * static_cast<double>(n), 1e-12);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      EXPECT_EQ(capture.rate_radps[axis][n], 100.0 * static_cast<double>(n) + static_cast<double>(axis));
-  }
-}
-
 TEST_F(LcmLog, TheSensorsOwnClockGoesBeforeTheFittedTime) {
   for (int n = 0; n < 3; ++n) add("IFOG_NOSE", sample(n, 1, 5'000'000'000 + n * 250'000'000LL));
   finish();

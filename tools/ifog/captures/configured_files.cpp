@@ -30,7 +30,7 @@ void will_read_files_of(const Config& config) {
   const std::vector<std::string> folders = plugin_folders(config.plugin_folders);
   for (const SensorConfig& sensor : config.sensors) {
     will_read("the configuration's model", sensor.model);
-    will_read("the configuration's transport of sensor " + sensor.name, sensor.transport.path);
+    will_read("the configuration's transport of sensor " + sensor.name, sensor.transport.file.path);
     for (const ChannelConfig& channel : sensor.channels)
       for (const std::string& path : {channel.path, channel.dbc})
         will_read("the configuration's channel " + channel.name, path);

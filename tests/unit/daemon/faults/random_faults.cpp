@@ -18,6 +18,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/pipeline.h"
+#include "daemon/sensor/sensor_parts.h"
 #include "tests/unit/daemon/faults/parts.h"
 #include "tests/unit/daemon/faults/wall_clock.h"
 
@@ -94,21 +95,18 @@ class Run {
   Run(unsigned seed, Draw& draw)
       : draw_(draw), cuts_(draw_cuts(draw)), outside_(std::make_shared<ChannelTable>(1)) {
     DriverInstance driver = Wire::driver(draw.can);
-    const ifog_description& description = driver.description();
     PipelinePlan plan;
     plan.lcm_channel = "test";
-    plan.facts = sensor_facts(description, 1000.0, 1);
+    SensorConfig sensor;
+    sensor.nominal_rate_hz = 1000.0;
+    sensor.channels = {coil()};
+    sensor.filter.process_noise = 1e-10;
+    sensor.filter.measurement_noise = 1e-8;
+    chain_ = sensor_chain_settings(sensor, driver.description(), nullptr);
+    plan.facts = chain_.facts;
     plan.ring_slots = draw.coin() ? 2 : 64;
     plan.direct = draw.coin();
     plan.reader.name = plan.filter.name = "test";
-    chain_.facts = plan.facts;
-    for (std::uint32_t i = 0; i < description.axes; ++i) chain_.axes.emplace_back(description.axis[i]);
-    for (std::uint32_t i = 0; i < description.environments; ++i)
-      chain_.channels.emplace_back(description.environment[i]);
-    chain_.channels.emplace_back("coil_degC");
-    chain_.channel_max_age_s.assign(chain_.channels.size(), 10.0);
-    chain_.filter.process_noise = 1e-10;
-    chain_.filter.measurement_noise = 1e-8;
     auto transport = std::make_unique<FaultyTransport>(draw.wire, cuts_, seed + 1, draw.holds_back);
     auto publisher = std::make_unique<FaultyPublisher>(seed + 2, draw.slow_network);
     line_ = transport.get();
@@ -133,17 +131,20 @@ class Run {
   [[nodiscard]] const std::string& findings() const { return findings_.text(); }
 
  private:
+  static ChannelConfig coil() {
+    ChannelConfig out;
+    out.name = "coil_degC";
+    out.source = ChannelConfig::Source::can;
+    out.interface = "flooded";
+    out.dbc = IFOG_SOURCE_DIR "/drivers/dbc/examples/ifogd_gyro.dbc";
+    out.signal = "Temperature";
+    out.limits.maximum = FloodedBus::kMost_degC;
+    return out;
+  }
   void flood(unsigned seed) {
     if (!draw_.flooded) return;
-    ChannelConfig coil;
-    coil.name = "coil_degC";
-    coil.source = ChannelConfig::Source::can;
-    coil.interface = "flooded";
-    coil.dbc = IFOG_SOURCE_DIR "/drivers/dbc/examples/ifogd_gyro.dbc";
-    coil.signal = "Temperature";
-    coil.limits.maximum = FloodedBus::kMost_degC;
     sources_ = std::make_unique<ChannelSources>(
-        std::vector{ChannelSources::Wanted{coil, outside_, 0}}, "",
+        std::vector{ChannelSources::Wanted{coil(), outside_, 0}}, "",
         [&](const CanSettings&) { return std::make_unique<FloodedBus>(seed, channel_dropped_); });
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the daemon notices of a sensor. Oracles: the law that a test's threshold is derived from, and what was
-// put into the samples. Months of them at full rate are in tests/bench/notice.
+// put into the samples.
 #include "daemon/health/sensor_watch.h"
 
 #include <gtest/gtest.h>
@@ -8,11 +8,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <random>
 #include <regex>
 
-#include "daemon/health/level_noise.h"
 #include "daemon/health/sequential_tests.h"
 #include "daemon/health/step_test.h"
 #include "filters/chain/signal_chain.h"
@@ -280,54 +278,27 @@ TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
   EXPECT_GT(usual, 1000.0);
 }
 
-TEST(LevelNoise, ItsInnovationsAreOfVarianceOneAndItsWalkTheOnePutIn) {
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> normal;
-  LevelNoise noise;
-  double level = 4.0, squares = 0.0, gain = 0.0, n = 0.0;
-  for (int i = 0; i < 40000; ++i) {
-    level += 0.1 * normal(random);  // ratio 0.01
-    const LevelNoise::Innovation& now = noise.take(level + normal(random), 1.0);
-    if (!now.known || i < 1000) continue;
-    squares += now.value * now.value;
-    n += 1.0;
-    gain = std::accumulate(now.gain.begin(), now.gain.end(), 0.0);
-  }
-  EXPECT_NEAR(squares / n, 1.0, 0.04);
-  EXPECT_NEAR(noise.walk(), 0.01, 1e-9);
-  // Of a ratio q: P = (q + sqrt(q^2 + 4 q)) / 2 before the update, gain P / (P + 1). Of what is as likely it
-  // takes the quicker, but no other walk of the table: half a decade up that is 0.163.
-  EXPECT_GT(gain, 0.0951 - 0.002);
-  EXPECT_LT(gain, 0.5 * (0.0951 + 0.163));
-}
-
-// S(f) = B^2 / (2 pi f) as processes half a decade apart, another table than the filter's.
-TEST(LevelNoise, SumsOfItsInnovationsAreThoseOfWhiteOnesWhereTheLevelIsInstable) {
+// The rate of a gyro whose bias instability meets its white noise at 100 s, S(f) = B^2 / (2 pi f), as processes half a
+// decade apart: another table than the filter's.
+TEST(SensorWatch, NoticesNothingOfABiasThatWanders) {
+  Made made(13);
   std::mt19937_64 random(10);
   std::normal_distribution<double> normal;
-  constexpr std::array<double, 9> kBlocks{1.5, 5.0, 15.0, 50.0, 150.0, 500.0, 1.5e3, 5e3, 1.5e4};
-  std::array<double, kBlocks.size()> process{};
-  const double deviation = 0.2;
+  std::array<double, 9> process{};
+  constexpr double kShortest_s = 10.0, kHalfDecade = 3.1623;
+  const double rest = made.rate, deviation = 0.03 * kSigma;
   for (double& each : process) each = deviation * normal(random);
-  LevelNoise noise;
-  std::array<double, 60> last{};
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (std::size_t i = 0; i < test::fewer(200000U, 60000U); ++i) {
-    double level = 0.0;
-    for (std::size_t p = 0; p < process.size(); ++p) {
-      const double keep = std::exp(-1.0 / kBlocks[p]);
-      level += process[p] = keep * process[p] + deviation * std::sqrt(1.0 - keep * keep) * normal(random);
+  for (int second = 0; second < 36 * 3600; ++second) {
+    double time_s = kShortest_s;
+    made.rate = rest;
+    for (double& each : process) {
+      const double keep = std::exp(-1.0 / time_s);
+      made.rate += each = keep * each + deviation * std::sqrt(1.0 - keep * keep) * normal(random);
+      time_s *= kHalfDecade;
     }
-    const LevelNoise::Innovation& now = noise.take(level + normal(random), 1.0);
-    sum += now.value - last[i % last.size()];
-    last[i % last.size()] = now.value;
-    if (i < 20000) continue;
-    squares += sum * sum;
-    n += static_cast<double>(last.size());
+    made.run(1.0);
+    ASSERT_EQ(made.watch.noticed(), 0) << made.watch.words() << " after " << second << " s";
   }
-  // 3000 independent sums: known to 2.6 %; 670 under a sanitizer, to 5.5 %.
-  EXPECT_NEAR(squares / n, 1.0, 0.15);
-  EXPECT_GT(noise.instability(), 0.01);
 }
 
 }  // namespace

@@ -36,13 +36,13 @@ TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
   fs::remove(path("ifogd.toml"));
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
   const auto rows = rows_of("denoised.csv");
-  ASSERT_EQ(rows.size(), published_.size());
+  ASSERT_EQ(rows.size(), published().size());
   for (std::size_t n = 0; n < rows.size(); ++n)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], published()[n].denoised[axis]) << n;
   // The noise did come from there: without it that of the first seconds is not known.
-  EXPECT_EQ(published_[1000].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0);
-  EXPECT_GT(published_[1000].variance[0], 0.0);
+  EXPECT_EQ(published()[1000].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0);
+  EXPECT_GT(published()[1000].variance[0], 0.0);
 }
 
 // Through a reload that changes nothing, one that changes the model, one that changes the filter, and a
@@ -62,12 +62,12 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
     if (n % 4 == 2) write("supply", std::to_string(11'600 + 500 * n) + "\n");
     ASSERT_TRUE(send_and_await(50)) << said();
   }
-  ASSERT_NE(published_.back().denoised[0], published_.back().compensated[0]);  // its noise is known
+  ASSERT_NE(published().back().denoised[0], published().back().compensated[0]);  // its noise is known
   reload("nothing changed, the filter continues");
-  const std::size_t unchanged = published_.size();
+  const std::size_t unchanged = published().size();
   ASSERT_TRUE(send_and_await(200)) << said();
-  for (std::size_t n = unchanged; n < published_.size(); ++n)
-    ASSERT_EQ(published_[n].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0) << n;
+  for (std::size_t n = unchanged; n < published().size(); ++n)
+    ASSERT_EQ(published()[n].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0) << n;
   std::string other = content("model.toml");
   other.replace(other.find("1e-3"), 4, "4e-3");
   write("model.toml", other);
@@ -83,7 +83,7 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   ASSERT_TRUE(send_and_await(300)) << said();
   ASSERT_EQ(end(SIGTERM), 0) << said();
   std::set<std::string> models;
-  for (const rate_t& message : published_) models.insert(message.model);
+  for (const rate_t& message : published()) models.insert(message.model);
   EXPECT_EQ(models.size(), 2U);
   // Neither model nor configuration nor channel is there any more: the recording carries what it needs.
   for (const char* name : {"model.toml", "ifogd.toml", "supply"}) fs::remove(path(name));
@@ -91,21 +91,21 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   EXPECT_TRUE(complaint_.starts_with(path("record/nose") + ": 2 runs of what wrote it, with ")) << complaint_;
   EXPECT_EQ(complaint_.substr(complaint_.find('\n') + 1), stale_in_words("record/nose"));
   const auto rows = rows_of("denoised.csv");
-  ASSERT_EQ(rows.size(), published_.size());
+  ASSERT_EQ(rows.size(), published().size());
   bool corrected = false;
   for (std::size_t n = 0; n < rows.size(); ++n)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ASSERT_EQ(rows[n][1 + 4 * axis], published_[n].raw[axis]) << n;
-      ASSERT_EQ(rows[n][2 + 4 * axis], published_[n].compensated[axis]) << n;
-      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
-      ASSERT_EQ(rows[n][4 + 4 * axis], published_[n].variance[axis]) << n;
-      corrected = corrected || published_[n].compensated[axis] != published_[n].raw[axis];
+      ASSERT_EQ(rows[n][1 + 4 * axis], published()[n].raw[axis]) << n;
+      ASSERT_EQ(rows[n][2 + 4 * axis], published()[n].compensated[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], published()[n].denoised[axis]) << n;
+      ASSERT_EQ(rows[n][4 + 4 * axis], published()[n].variance[axis]) << n;
+      corrected = corrected || published()[n].compensated[axis] != published()[n].raw[axis];
     }
   EXPECT_TRUE(corrected);
   // Every command reads it as a capture, the channel from elsewhere among its columns.
   ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
   EXPECT_NE(content("capture.csv").substr(0, 200).find("supply_V"), std::string::npos);
-  EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
+  EXPECT_EQ(rows_of("capture.csv").size(), published().size());
   EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
   // And it is sent again as it came, to the bit.
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
@@ -186,7 +186,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
   EXPECT_EQ(content("again"), sent_);
   EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
-  published_.clear();
+  published().clear();
   start();
   ASSERT_TRUE(send_and_await(500)) << said();
   ASSERT_EQ(end(SIGTERM), 0);
@@ -210,7 +210,7 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   realtime_lines_ = "[sensor.realtime]\nring_slots = 2\ndirect = false\n";
   // A source that does not wait until it is read.
   transport_lines_ = "type = \"udp\"\nbind = \"127.0.0.1\"\nport = 45671\n";
-  close(std::exchange(line_, socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)));
+  fifos_["udp"] = line_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(45671);
@@ -225,23 +225,23 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   }
   const auto came = [&] {
     std::uint64_t out = 0;
-    for (const rate_t& message : published_)
+    for (const rate_t& message : published())
       out += static_cast<std::uint64_t>(std::max<std::int32_t>(message.merged, 1));
     return out;
   };
-  for (int burst = 0; burst < 100 && published_.size() == came(); ++burst) {
+  for (int burst = 0; burst < 100 && published().size() == came(); ++burst) {
     send(50);
     for (int n = 0; n < 600 && came() < samples_; ++n) listen(50);
     ASSERT_EQ(came(), samples_) << said();
   }
-  const std::size_t merged = static_cast<std::size_t>(samples_) - published_.size();
+  const std::size_t merged = static_cast<std::size_t>(samples_) - published().size();
   ASSERT_GT(merged, 0U);
   ASSERT_EQ(end(SIGTERM), 0) << said();
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv") + " --json " +
                  path("denoised.json")),
             0)
       << complaint_;
-  EXPECT_EQ(rows_of("denoised.csv").size(), published_.size() + merged);
+  EXPECT_EQ(rows_of("denoised.csv").size(), published().size() + merged);
   EXPECT_NE(complaint_.find(": " + std::to_string(merged) + " samples, the first about 0."),
             std::string::npos)
       << complaint_;
@@ -250,7 +250,7 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   EXPECT_NE(content("denoised.json").find("\"merged\": " + std::to_string(merged) + ","), std::string::npos);
   // Until the first of them, every row is what was published.
   const auto rows = rows_of("denoised.csv");
-  for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published_[n].denoised[0]) << n;
+  for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published()[n].denoised[0]) << n;
 }
 
 TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
@@ -270,7 +270,7 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   start();
   for (int n = 0; n < 600 && !fs::exists(path("heard")); ++n) listen(10);
   for (int n = 0; n < 100; ++n) listen(10);
-  const std::size_t before = published_.size();
+  const std::size_t before = published().size();
   // At the sensor's own rate, so that the fitted time advances.
   auto due = std::chrono::steady_clock::now();
   for (int n = 0; n < 300; ++n) {
@@ -288,8 +288,8 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   const std::string capture = content("capture.csv");
   EXPECT_NE(capture.substr(0, 200).find("supply_V"), std::string::npos) << capture.substr(0, 200);
   const auto rows = rows_of("capture.csv");
-  ASSERT_EQ(rows.size(), published_.size());
-  for (std::size_t n = 0; n < rows.size(); ++n) ASSERT_EQ(rows[n][1], published_[n].raw[0]) << n;
+  ASSERT_EQ(rows.size(), published().size());
+  for (std::size_t n = 0; n < rows.size(); ++n) ASSERT_EQ(rows[n][1], published()[n].raw[0]) << n;
   EXPECT_EQ(ifog("allan " + path("heard") + " --json " + path("allan.json")), 0) << complaint_;
 }
 

@@ -285,8 +285,8 @@ TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
   sensor.name = "nose";
   sensor.driver = "dbc";
   sensor.transport.kind = TransportConfig::Kind::file;
-  sensor.transport.candump = true;
-  sensor.transport.path = log;
+  sensor.transport.file.format = FileSettings::Format::candump;
+  sensor.transport.file.path = log;
   Config config;
   config.file = "ifogd.toml";
   const auto interface = [&] { return flight_header(sensor, config, driver, "").interface; };
@@ -297,7 +297,7 @@ TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
   EXPECT_EQ(interface(), "can1");
   sensor.transport.kind = TransportConfig::Kind::file;
   sensor.transport.interface.clear();
-  sensor.transport.path = log + ".not-there";
+  sensor.transport.file.path = log + ".not-there";
   EXPECT_EQ(interface(), "");
 }
 
