@@ -272,6 +272,7 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
 }
 
 std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
+  if (!file_.open && waiting_.bytes.empty()) return 0;  // leaves the folder alone, which may not exist
   turn(now_ns, wall_ns, true);
   // A full disk may still have space for the small end; the error is that of the data.
   if (file_.open)

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
@@ -29,6 +31,20 @@ void require_short_keys(std::string_view text, const std::string& name) {
                                std::to_string(kInputLimits.toml_dots) + " dots in a line, expected fewer");
     }
   }
+}
+
+// What follows the equals sign in a line, counted from 1.
+std::string_view value_in(std::string_view text, std::size_t line) {
+  for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(text.find('='), text.size()));
+  text.remove_prefix(std::min(text.find_first_not_of("= \t"), text.size()));
+  return text;
+}
+
+bool is_bare_word(std::string_view value) {
+  return !value.empty() &&
+         (std::isalpha(static_cast<unsigned char>(value.front())) != 0 || value.front() == '/');
 }
 
 }  // namespace
@@ -65,7 +81,9 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     if (!line.starts_with('#') && line.find(',') != std::string_view::npos &&
         line.find('=') == std::string_view::npos && !line.starts_with('['))
       throw std::runtime_error(name + ": begins as a table of columns does, as of a capture, expected TOML");
-    throw std::runtime_error(name + ":" + std::to_string(error.source().begin.line) + ": " +
+    const std::size_t number = error.source().begin.line;
+    throw std::runtime_error(name + ":" + std::to_string(number) + ": " +
+                             (is_bare_word(value_in(text, number)) ? "a text needs quotes; " : "") +
                              printable(error.description(), kLongestMessage));
   }
 }

@@ -105,7 +105,7 @@ void run_drivers(const std::string& name, const std::string& json) {
   }
   for (const FoundPlugin& found : all)
     if (!found.plugin) say("refused: {}\n", found.refusal);
-  say("looked in:\n");
+  say("looked in{}\n", folders.empty() ? " no folder: none of those in question exists" : ":");
   for (const std::string& folder : folders) say("  {}\n", folder);
   if (usable == 0) throw std::runtime_error("no driver found; IFOG_PLUGIN_PATH may name folders to look in");
 }

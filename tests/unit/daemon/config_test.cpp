@@ -241,6 +241,7 @@ TEST(Config, TheComputersRunHasTheNameThatTheKernelGivesIt) {
 TEST(Config, NothingToDoAndNoTomlAreErrors) {
   EXPECT_EQ(complaint("[daemon]\n"), "f.toml: no [[sensor]]: expected at least one");
   EXPECT_TRUE(complaint("[daemon]\nlock_memory = \n").starts_with("f.toml:2: "));
+  EXPECT_TRUE(complaint("[[sensor]]\nname = nose\n").starts_with("f.toml:2: a text needs quotes; "));
 }
 
 // What the file holds may have line ends of its own.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <string_view>
 
 #include "tests/unit/daemon/daemon_process.h"
@@ -95,16 +96,18 @@ TEST_F(Ifogd, WhatCannotBeSaidHasFailed) {
 
 TEST_F(Ifogd, ACheckOpensNothing) {
   configure(std::string(kFile) +
+            "[sensor.record]\nfolder = \"tape\"\n"
             "[[sensor.channel]]\nname = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n");
   // LCM would try to connect.
   std::string text;
   std::getline(std::ifstream(path("ifogd.toml")), text, '\0');
   write("ifogd.toml", text.replace(text.find("lock_memory"), 0, "lcm_url = \"tcpq://127.0.0.1:1\"\n"));
-  EXPECT_EQ(ifogd(), 1) << said();
-  EXPECT_GE(times_said("LCM tcpq"), 1) << said();
   EXPECT_EQ(ifogd("--check"), 0) << said();
+  EXPECT_FALSE(std::filesystem::exists(path("tape")));
   ASSERT_EQ(lines_said().size(), 1U) << said();
   EXPECT_EQ(lines_said()[0], path("ifogd.toml") + ": good, 1 sensor(s)");
+  EXPECT_EQ(ifogd(), 1) << said();
+  EXPECT_GE(times_said("LCM tcpq"), 1) << said();
 }
 
 TEST_F(Ifogd, AFileWithoutAFrameHasFailed) {
