@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "filters/allan/deviation.h"
+#include "filters/allan/runs.h"
 #include "filters/linear/exact_sum.h"
 
 namespace ifog {
@@ -79,6 +80,11 @@ AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> 
   std::vector<Stretch> chosen;
   if (holes == Holes::kFilledIfNegligible) stretches = chosen = negligible(rate_radps, stretches);
   find_mean(rate_radps, stretches);
+  constexpr std::size_t kSome = 100'000;
+  for (const Stretch& s : stretches.first(std::min<std::size_t>(1, stretches.size()))) {
+    const Stretch some{s.begin, std::min(s.end, s.begin + kSome)};
+    held_ = held_samples(rate_radps, {&some, 1});
+  }
   std::size_t total = stretches.size();
   for (const Stretch& s : stretches) total += s.size() + s.lost;
   angle_.reserve(total);

@@ -32,6 +32,8 @@ class AngleSum {
   [[nodiscard]] std::size_t samples() const { return angle_.size() - parts_.size() - filled_; }
   [[nodiscard]] std::size_t filled() const { return filled_; }  // samples in holes, besides samples()
   [[nodiscard]] std::size_t longest() const;                    // samples of the longest part
+  // Samples for which a logger holds each value (runs.h): shorter averages show the logger.
+  [[nodiscard]] std::size_t held() const { return held_; }
 
  private:
   static std::vector<Stretch> negligible(std::span<const double> rate_radps,
@@ -42,7 +44,7 @@ class AngleSum {
   Samples angle_;
   std::vector<Part> parts_;
   double mean_ = 0.0;
-  std::size_t filled_ = 0;
+  std::size_t filled_ = 0, held_ = 1;
 };
 
 }  // namespace ifog

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "filters/rest/runs.h"
+#include "filters/allan/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

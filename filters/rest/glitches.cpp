@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "filters/allan/runs.h"
 #include "filters/distributions/median.h"
-#include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

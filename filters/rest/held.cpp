@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "filters/rest/runs.h"
+#include "filters/allan/runs.h"
 
 namespace ifog {
 namespace {

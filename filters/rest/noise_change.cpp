@@ -6,9 +6,9 @@
 #include <cmath>
 #include <span>
 
+#include "filters/allan/runs.h"
 #include "filters/distributions/median.h"
 #include "filters/rest/held.h"
-#include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <span>
 #include <utility>
 
-#include "filters/rest/runs.h"
+#include "filters/allan/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -33,15 +32,11 @@ std::vector<double> values_of(std::span<const double> rate, std::span<const Stre
 }
 
 void find_held(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
-  std::map<std::size_t, std::size_t> lengths;
-  std::size_t runs = 0;
   const Stretch all{0, values.size()};
-  for_each_run(values, {&all, 1}, [&](const Run& run) { ++runs, ++lengths[run.length]; });
-  const auto usual = std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; });
-  if (10 * usual->second < 9 * runs || runs <= 16 || usual->first == 1) return;
-  found.push_back({"held", "each value stands " + std::to_string(usual->first) +
-                               " times: the sensor's own rate is " +
-                               six(1.0 / (period_s * static_cast<double>(usual->first))) +
+  const std::size_t held = held_samples(values, {&all, 1});
+  if (held == 1) return;
+  found.push_back({"held", "each value stands " + std::to_string(held) + " times: the sensor's own rate is " +
+                               six(1.0 / (period_s * static_cast<double>(held))) +
                                " Hz, and figures below that period are the logger's"});
 }
 

@@ -40,7 +40,8 @@ void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& fou
   if ((found.markov && found.markov->present) || !found.left_out_hz.empty() || !found.lines_hz.empty())
     return;
   std::vector<std::size_t> octaves;
-  for (std::size_t m = 1; m <= longest_average(Deviation::kAllan, sum.longest()); m *= 2)
+  for (std::size_t m = sum.held() == 1 ? 1 : 8 * sum.held();
+       m <= longest_average(Deviation::kAllan, sum.longest()); m *= 2)
     octaves.push_back(m);
   const std::vector<DeviationPoint> points = deviation(sum, octaves);
   const std::vector<AllanInterval> intervals =

@@ -249,6 +249,22 @@ TEST(NoiseCoefficients, ASwingIsNoBiasInstabilityThatAFilterHoldsDown) {
   EXPECT_LT(f.B.upper, 2e-4);  // 1.4 times the lowest deviation
 }
 
+// A logger at twice and five times the sensor's rate: white noise stays what it is.
+TEST(NoiseCoefficients, ValuesThatALoggerHoldsAreNoOtherNoise) {
+  constexpr double kN = 1e-4;
+  for (const std::size_t held : {2U, 5U})
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      std::vector<double> rate;
+      for (const double value :
+           ifog::simulate::noise({.N = kN}, kRate / static_cast<double>(held), 60000 / held, seed))
+        rate.insert(rate.end(), held, value);
+      const NoiseCoefficients found = fit(rate);
+      EXPECT_NEAR(found.N.value, kN, 4.0 * found.N.std_error) << held << " " << seed;
+      EXPECT_LT(found.N.std_error, 0.05 * kN);
+      EXPECT_FALSE(found.Q.present || found.B.present || found.K.present) << held << " " << seed;
+    }
+}
+
 TEST(NoiseCoefficients, RefusesWhatCannotBeFitted) {
   EXPECT_THROW((void)fit(std::vector<double>(63, 1.0)), std::invalid_argument);
   EXPECT_THROW((void)fit(std::vector<double>(1000, 1.0)), std::invalid_argument);

@@ -2,9 +2,11 @@
 // Runs of equal values.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <span>
 
 #include "filters/allan/stretches.h"
@@ -42,6 +44,16 @@ void for_each_run(std::span<const double> series, std::span<const Stretch> parts
     }
     if (run.length > 0) use(run);
   }
+}
+
+// Number of samples for which a logger holds each value of a slower sensor: nine of ten runs have this length. 1 if
+// values do not repeat, or there are too few to tell.
+inline std::size_t held_samples(std::span<const double> series, std::span<const Stretch> parts) {
+  std::map<std::size_t, std::size_t> lengths;
+  std::size_t runs = 0;
+  for_each_run(series, parts, [&](const Run& run) { ++runs, ++lengths[run.length]; });
+  const auto usual = std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; });
+  return runs > 16 && 10 * usual->second >= 9 * runs ? usual->first : 1;
 }
 
 }  // namespace ifog
