@@ -16,7 +16,7 @@ namespace {
 constexpr double kLate_s = 2.0;  // limit for a rollover
 constexpr double kYear_s = 365.0 * 86'400.0;
 
-constexpr std::size_t kAgain = 8;   // rows that go on from an earlier time
+constexpr std::size_t kFew = 8;     // rows that show an earlier time to go on; recordings in one file
 constexpr double kBetween_s = 1.0;  // hole between two recordings in one file
 
 std::size_t line_of(const RowBlock& rows, std::size_t row) {
@@ -127,13 +127,15 @@ bool RowOrder::begins_again(const RowBlock& rows, std::size_t row) {
   falling_ += back_ > 0 && now_s < back_s_ ? 1 : 0;
   back_ = now_s >= back_s_ ? back_ + 1 : 1;
   back_s_ = now_s;
-  if (back_ < kAgain || now_s - first_s_ > 0.5 * (last_s_ - first_s_)) return false;
+  if (back_ < kFew || joined_ == kFew || now_s - first_s_ > 0.5 * (last_s_ - first_s_)) return false;
   back_ = 0;
-  dropped_.count -= kAgain - 1;
-  offset_s_ += last_s_ - now_s + kBetween_s;
+  dropped_.count -= kFew - 1;
+  ++joined_;
+  first_s_ = last_s_ + kBetween_s;
+  offset_s_ += first_s_ - now_s;
   std::string at = " begins again at ";
   append_time(at, rows.origin, rows.time_s[row]);
-  tell_joined(line_of(rows, row), at + " s, and " + std::to_string(kAgain - 1) + " rows before are dropped");
+  tell_joined(line_of(rows, row), at + " s, and " + std::to_string(kFew - 1) + " rows before are dropped");
   return true;
 }
 
@@ -152,7 +154,7 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       offset_s_ += longer_s;
       now_s += longer_s;
     } else if (back && begins_again(rows, i)) {
-      now_s = last_s_ + kBetween_s;
+      now_s = first_s_;
     } else if (back) {
       // If this row continues those before the last one, the last one is wrong.
       const bool last_is_late = now_s >= before_s_;
@@ -164,8 +166,8 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       tell_joined(line_, " continues " + std::to_string(std::llround(last_s_ - before_s_)) + " s later");
     }
     if (!back) back_ = 0;
-    first_s_ = rows_ > 1 ? first_s_ : now_s;
-    before_s_ = rows_ > 1 ? last_s_ : before_s_;
+    if (rows_ == 1) first_s_ = now_s;
+    if (rows_ > 1) before_s_ = last_s_;
     last_s_ = now_s;
     line_ = line_of(rows, i);
     rows.move_row(i, kept);

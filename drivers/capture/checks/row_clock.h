@@ -41,13 +41,12 @@ class RowOrder {
   const std::string time_;
   RowNotes& notes_;
   double offset_s_ = 0.0;  // sum of rollovers
-  // Times of the last row and the one before, if any.
-  double last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
+  // Times of the first row of the present recording, of the last row and the one before, if any.
+  double first_s_ = 0.0, last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
   std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
-  double first_s_ = 0.0;
   // Times that went back: the last one, how many that increase, and how many that decrease.
   double back_s_ = -std::numeric_limits<double>::infinity();
-  std::size_t back_ = 0, falling_ = 0;
+  std::size_t back_ = 0, falling_ = 0, joined_ = 0;  // joined_: recordings in the file, except the first
   Fault dropped_;
   bool set_ = false;  // a set clock was reported
 };

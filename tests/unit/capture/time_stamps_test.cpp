@@ -143,27 +143,6 @@ TEST(DateTime, IsNothingElse) {
   for (std::string text; std::getline(texts, text, ';');) EXPECT_EQ(seconds(text), "") << text;
 }
 
-TEST(DateTime, ACaptureMayHaveThemForItsTime) {
-  const std::string rows =
-      "2026-05-01T23:59:59.990000Z,0.5\n2026-05-02T00:00:00.000000Z,0.25\n2026-05-02T00:00:00.010000Z,0\n";
-  const ifog::Capture numbers = ifog::parse_capture(
-      "time_s,rate_radps\n1777679999.990000,0.5\n1777680000.000000,0.25\n1777680000.010000,0\n", "a.csv");
-  const ifog::Capture dates = ifog::parse_capture("time_s,rate_radps\n" + rows, "a.csv");
-  EXPECT_EQ(dates.time_s, numbers.time_s);
-  EXPECT_EQ(dates.rate_radps, numbers.rate_radps);
-  EXPECT_TRUE(dates.notices.empty());
-
-  ifog::CsvLayout by;
-  by.time = ifog::CsvTime::parse("Zeit");
-  by.separator = ';';
-  const ifog::Capture german = ifog::parse_capture(
-      "Zeit;rate_radps\n2026-05-02 01:59:59,99+02:00;0,5\n2026-05-02 02:00:00,00+02:00;0,25\n"
-      "2026-05-02 02:00:00,01+02:00;0\n",
-      "a.csv", by);
-  EXPECT_EQ(german.time_s, numbers.time_s);
-  EXPECT_EQ(german.rate_radps, numbers.rate_radps);
-}
-
 TEST(DateTime, WhatIsWrongIsSaidByLine) {
   const std::string rows = "2026-05-01T12:00:00Z,1\n2026-05-01T12:00:01Z,2\n";
   EXPECT_EQ(ifog::refusal_of("Timestamp,GyroX (deg/s)\n" + rows), "accepted");
