@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/ifog/quoted.h"
 

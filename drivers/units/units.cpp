@@ -33,6 +33,7 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
                              Unit{"arcsec", kDegree / 3600.0},
                              Unit{"arcsecond", kDegree / 3600.0},
                              Unit{"mas", kDegree / 3600.0e3},
+                             Unit{"cdeg", kDegree * 1e-2},
                              Unit{"gon", kTurn / 400.0},
                              Unit{"rev", kTurn},
                              Unit{"revolution", kTurn},
@@ -49,12 +50,14 @@ constexpr std::array kRates{
     Unit{"mradps", 1e-3},         Unit{"rpm", kTurn / 60.0},       Unit{"krpm", kTurn / 60.0e-3},
     Unit{"upm", kTurn / 60.0},    Unit{"minutinver", kTurn / 60.0}};
 
-constexpr std::array kTimes{
-    Unit{"s", 1.0},       Unit{"sec", 1.0},    Unit{"second", 1.0},  Unit{"sek", 1.0},
-    Unit{"ms", 1e-3},     Unit{"msec", 1e-3},  Unit{"us", 1e-6},     Unit{"usec", 1e-6},
-    Unit{"ns", 1e-9},     Unit{"min", 60.0},   Unit{"minute", 60.0}, Unit{"h", 3600.0},
-    Unit{"hr", 3600.0},   Unit{"hrs", 3600.0}, Unit{"hour", 3600.0}, Unit{"secon", 1.0},
-    Unit{"sekunde", 1.0}, Unit{"std", 3600.0}, Unit{"d", 86400.0},   Unit{"day", 86400.0}};
+constexpr std::array kTimes{Unit{"s", 1.0},      Unit{"sec", 1.0},     Unit{"second", 1.0},
+                            Unit{"sek", 1.0},    Unit{"secon", 1.0},   Unit{"sekunde", 1.0},
+                            Unit{"min", 60.0},   Unit{"minute", 60.0}, Unit{"h", 3600.0},
+                            Unit{"hr", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hour", 3600.0},
+                            Unit{"std", 3600.0}, Unit{"d", 86400.0},   Unit{"day", 86400.0}};
+
+constexpr std::array kPrefixes{Unit{"milli", 1e-3}, Unit{"micro", 1e-6}, Unit{"nano", 1e-9},
+                               Unit{"m", 1e-3},     Unit{"u", 1e-6},     Unit{"n", 1e-9}};
 
 template <std::size_t N>
 std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
@@ -63,15 +66,19 @@ std::optional<double> find(const std::array<Unit, N>& units, std::string_view te
   return std::nullopt;
 }
 
-// Also with a prefix: mrad, milliradians.
-std::optional<double> find_angle(std::string_view text) {
-  if (const std::optional<double> whole = find(kAngles, text)) return whole;
-  for (const auto& [prefix, value] :
-       {Unit{"milli", 1e-3}, {"micro", 1e-6}, {"m", 1e-3}, {"u", 1e-6}, {"n", 1e-9}, {"c", 1e-2}})
+// Also with a prefix, of a unit of at most that value: mrad, milliradians; ms, nanoseconds, but no milli-hours.
+template <std::size_t N>
+std::optional<double> find_prefixed(const std::array<Unit, N>& units, std::string_view text, double most) {
+  if (const std::optional<double> whole = find(units, text)) return whole;
+  for (const auto& [prefix, value] : kPrefixes)
     if (text.starts_with(prefix))
-      if (const std::optional<double> rest = find(kAngles, text.substr(prefix.size()))) return value * *rest;
+      if (const auto rest = find(units, text.substr(prefix.size())); rest && *rest <= most)
+        return value * *rest;
   return std::nullopt;
 }
+
+std::optional<double> find_time(std::string_view text) { return find_prefixed(kTimes, text, 1.0); }
+std::optional<double> find_angle(std::string_view text) { return find_prefixed(kAngles, text, kTurn); }
 
 struct Spelling {
   std::string_view from, to;
@@ -173,7 +180,7 @@ std::optional<Quotient> quotient(std::string_view text) {
 
 }  // namespace
 
-std::optional<double> time_unit(std::string_view text) { return find(kTimes, plain(text)); }
+std::optional<double> time_unit(std::string_view text) { return find_time(plain(text)); }
 
 std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rate) {
   const std::string unit = plain(text);
@@ -182,7 +189,7 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
   if (const std::optional<double> known = find(kRates, unit)) return known;
   const std::optional<Quotient> parts = quotient(unit);
   if (!parts) return std::nullopt;
-  const std::optional<double> time = find(kTimes, parts->time);
+  const std::optional<double> time = find_time(parts->time);
   if (!time) return std::nullopt;
   if (*time == 60.0)
     for (const std::string_view turn : kPerMinute)

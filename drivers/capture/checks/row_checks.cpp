@@ -47,18 +47,19 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
 }
 
 // Converts to the capture's units; angles stay in rad until as_rates().
-void convert(RowBlock& rows, const CsvLayout& layout) {
-  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-    const UnitConversion conversion = layout.columns[i].conversion();
+void convert(RowBlock& rows, const std::vector<FileColumn>& columns) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const UnitConversion conversion = columns[i].conversion();
     if (conversion.scale == 1.0 && conversion.offset == 0.0) continue;
     for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
   }
 }
 
 // Needs all rows, to find out whether an angle stays within one turn.
-void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std::string& path) {
-  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-    const CsvColumn& column = layout.columns[i];
+void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& notes,
+              const std::string& path) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const FileColumn& column = columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.unit.ends_with("/sample")) {
@@ -87,18 +88,17 @@ std::string what_no_sensor_measures(const std::string& name, std::string_view ce
 RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
                      RowSink& sink, RowNotes& notes)
     : path_(path),
-      layout_(layout),
       columns_(std::move(columns)),
       sink_(sink),
       notes_(notes),
       clock_(path, layout.time.value_or(CsvTime{}).header, layout.keep_repeats, notes,
              [this](RowBlock& rows) { behind_clock(rows); }) {
-  if (std::ranges::any_of(layout.columns, [](const auto& c) { return c.angle_rad().has_value(); }))
+  if (std::ranges::any_of(columns_, [](const auto& column) { return column.angle_rad().has_value(); }))
     all_.emplace();
 }
 
 void RowChecks::take(RowBlock& rows) {
-  if (layout_.chooses()) convert(rows, layout_);
+  convert(rows, columns_);
   rows_ += rows.size();
   clock_.take(rows);
 }
@@ -114,19 +114,19 @@ void RowChecks::finish(std::span<const Fault> found) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
   clock_.finish();
   if (!all_) return;
-  as_rates(*all_, layout_, notes_, path_);
+  as_rates(*all_, columns_, notes_, path_);
   sink_.take(*all_);
 }
 
 void RowChecks::tell_impossible(const FileColumn& column, const Fault& found) {
   if (found.count == 0) return;
-  const std::string what = what_no_sensor_measures(column.name, found.first, column.range);
+  const std::string what = what_no_sensor_measures(column.cell, found.first, column.range);
   const bool few = found.count == 1 || kRowsAFault * found.count <= rows_;
-  if (column.rate && (rows_ == 1 || !few)) {
+  if (is_rate_column(column.name) && (rows_ == 1 || !few)) {
     std::string more =
         found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "";
     if (found.first.find_first_not_of("+-0123456789") == std::string::npos)
-      more += "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.name) +
+      more += "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.cell) +
               ":0.00763deg/s'";
     fail_at(path_, found.line, what + more);
   }

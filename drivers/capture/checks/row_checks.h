@@ -21,7 +21,7 @@ std::string what_no_sensor_measures(const std::string& name, std::string_view ce
 
 class RowChecks {
  public:
-  // columns: in the order of the sink's names. Path, layout, sink and notes must outlive this object.
+  // columns: in the order of the sink's names. Path, sink and notes must outlive this object.
   RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
             RowNotes& notes);
 
@@ -40,7 +40,6 @@ class RowChecks {
   void behind_clock(RowBlock& rows);
 
   const std::string& path_;
-  const CsvLayout& layout_;
   const std::vector<FileColumn> columns_;
   RowSink& sink_;
   RowNotes& notes_;

@@ -16,12 +16,20 @@ namespace {
 constexpr double kLate_s = 2.0;  // limit for a rollover
 constexpr double kYear_s = 365.0 * 86'400.0;
 
+constexpr std::size_t kFew = 8;     // rows that show an earlier time to go on; recordings in one file
+constexpr double kBetween_s = 1.0;  // hole between two recordings in one file
+
+std::size_t line_of(const RowBlock& rows, std::size_t row) {
+  return rows.lines.empty() ? 0 : rows.lines[row];
+}
+
 struct Rollover {
   double length_s;
   const char* what;
 };
-constexpr std::array<Rollover, 6> kRollovers{{{604'800.0, "a GPS week"},
+constexpr std::array<Rollover, 7> kRollovers{{{604'800.0, "a GPS week"},
                                               {86'400.0, "a day"},
+                                              {3600.0, "an hour"},
                                               {0x1p32 * 1e-6, "a count of µs in 32 bits"},
                                               {0x1p32 * 1e-4, "a count of 100 µs in 32 bits"},
                                               {0x1p32 * 1e-3, "a count of ms in 32 bits"},
@@ -76,13 +84,9 @@ Bursts bursts_of(const std::vector<double>& time_s) {
 }
 
 bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
-  bool any = false;
-  for (const std::vector<double>& column : rows.columns) {
-    if (column.empty()) continue;
-    any = true;
-    if (column[a] != column[b] && !(std::isnan(column[a]) && std::isnan(column[b]))) return false;
-  }
-  return any;
+  return !rows.columns.empty() && std::ranges::all_of(rows.columns, [&](const std::vector<double>& column) {
+    return column[a] == column[b] || (std::isnan(column[a]) && std::isnan(column[b]));
+  });
 }
 
 // True if most rows that repeat the one before, with its time, do so by chance, as coarse values do: then rows
@@ -116,15 +120,41 @@ double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   return found->length_s;
 }
 
+// True if a time that goes back is the last of some that do and increase: of another recording, which begins in the first
+// half of this one, or before it. These were dropped, except this one.
+bool RowOrder::begins_again(const RowBlock& rows, std::size_t row) {
+  const double now_s = rows.time_s[row] + offset_s_;
+  falling_ += back_ > 0 && now_s < back_s_ ? 1 : 0;
+  back_ = now_s >= back_s_ ? back_ + 1 : 1;
+  back_s_ = now_s;
+  if (back_ < kFew || joined_ == kFew || now_s - first_s_ > 0.5 * (last_s_ - first_s_)) return false;
+  back_ = 0;
+  dropped_.count -= kFew - 1;
+  ++joined_;
+  first_s_ = last_s_ + kBetween_s;
+  offset_s_ += first_s_ - now_s;
+  std::string at = " begins again at ";
+  append_time(at, rows.origin, rows.time_s[row]);
+  tell_joined(line_of(rows, row), at + " s, and " + std::to_string(kFew - 1) + " rows before are dropped");
+  return true;
+}
+
+void RowOrder::tell_joined(std::size_t line, const std::string& how) {
+  notes_.notices.push_back(
+      path_ + ":" + std::to_string(line) + ": " + printable(time_) + how +
+      ", as after a clock was set or where two recordings are joined: treated as a hole");
+}
+
 void RowOrder::take(RowBlock& rows, std::size_t known) {
-  const auto line_of = [&](std::size_t row) { return rows.lines.empty() ? 0 : rows.lines[row]; };
   std::size_t kept = known;
   for (std::size_t i = known; i < rows.size(); ++i) {
     double now_s = rows.time_s[i] + offset_s_;
     const bool back = rows_++ > 0 && now_s < last_s_;
-    if (const double longer_s = back ? rolled_over_s(now_s, line_of(i)) : 0.0; longer_s > 0.0) {
+    if (const double longer_s = back ? rolled_over_s(now_s, line_of(rows, i)) : 0.0; longer_s > 0.0) {
       offset_s_ += longer_s;
       now_s += longer_s;
+    } else if (back && begins_again(rows, i)) {
+      now_s = first_s_;
     } else if (back) {
       // If this row continues those before the last one, the last one is wrong.
       const bool last_is_late = now_s >= before_s_;
@@ -133,15 +163,13 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       --kept;
       last_s_ = before_s_;
     } else if (last_s_ - before_s_ >= kYear_s && !std::exchange(set_, true)) {
-      notes_.notices.push_back(
-          path_ + ":" + std::to_string(line_) + ": its time continues " +
-          std::to_string(std::llround(last_s_ - before_s_)) +
-          " s later, as after a clock was set or where two recordings are joined: treated "
-          "as a hole, behind which times are coarser");
+      tell_joined(line_, " continues " + std::to_string(std::llround(last_s_ - before_s_)) + " s later");
     }
-    before_s_ = rows_ > 1 ? last_s_ : before_s_;
+    if (!back) back_ = 0;
+    if (rows_ == 1) first_s_ = now_s;
+    if (rows_ > 1) before_s_ = last_s_;
     last_s_ = now_s;
-    line_ = line_of(i);
+    line_ = line_of(rows, i);
     rows.move_row(i, kept);
     rows.time_s[kept++] = now_s;
   }
@@ -155,16 +183,21 @@ void RowOrder::drop(const RowBlock& rows, std::size_t row, bool late) {
     append_time(what, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
     what += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
   }
-  dropped_.add(rows.lines.empty() ? 0 : rows.lines[row], std::move(what));
+  dropped_.add(line_of(rows, row), std::move(what));
 }
 
 void RowOrder::finish() {
   const std::size_t count = dropped_.count;
   if (count == 0) return;
-  if (rows_ < kRowsAFault * count)
-    fail_at(path_, dropped_.line,
-            dropped_.first + (count == 1 ? "" : "; so are " + std::to_string(count - 1) + " more rows") +
-                "; --sample-rate HZ reads all rows as even");
+  const bool falls = 2 * falling_ >= count && 2 * count > rows_;
+  if (falls || rows_ < kRowsAFault * count)
+    fail_at(
+        path_, dropped_.line,
+        dropped_.first +
+            (falls ? "; times decrease from row to row, as of a recording written backwards: 'tac' turns them"
+             : count > 1 ? "; so are " + std::to_string(count - 1) + " more rows"
+                         : "") +
+            "; --sample-rate HZ reads all rows as even");
   notes_.faults.push_back(dropped_.dropped(path_, "row"));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts the times of logged rows to times that increase from row to row:
 //   - a rollover of a counter or clock of known length adds that length;
+//   - times that begin again are of a second recording in the file, behind a hole;
 //   - a row whose time goes back otherwise (clock set back, network reordering) or is too late is dropped and
 //   counted; the file is rejected if these exceed 1 %. A step of a year is a set clock, and reported;
 //   - a row that repeats the time and values of the one before is dropped and counted, unless chance explains it;
@@ -31,6 +32,8 @@ class RowOrder {
  private:
   // Length of the rollover that explains the decrease; 0: none.
   double rolled_over_s(double now_s, std::size_t line);
+  bool begins_again(const RowBlock& rows, std::size_t row);
+  void tell_joined(std::size_t line, const std::string& how);
   // late: the row's own time is wrong; else it goes back.
   void drop(const RowBlock& rows, std::size_t row, bool late);
 
@@ -38,9 +41,12 @@ class RowOrder {
   const std::string time_;
   RowNotes& notes_;
   double offset_s_ = 0.0;  // sum of rollovers
-  // Times of the last row and the one before, if any.
-  double last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
+  // Times of the first row of the present recording, of the last row and the one before, if any.
+  double first_s_ = 0.0, last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
   std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
+  // Times that went back: the last one, how many that increase, and how many that decrease.
+  double back_s_ = -std::numeric_limits<double>::infinity();
+  std::size_t back_ = 0, falling_ = 0, joined_ = 0;  // joined_: recordings in the file, except the first
   Fault dropped_;
   bool set_ = false;  // a set clock was reported
 };

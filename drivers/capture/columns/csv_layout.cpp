@@ -11,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_roles.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"

@@ -3,9 +3,12 @@
 // fit. All commands use these ranges.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/capture/columns/csv_layout.h"
 
@@ -19,12 +22,10 @@ struct Measurable {
 };
 
 // A column of a file, except the time.
-struct FileColumn {
-  std::string name;       // in the file
+struct FileColumn : CsvColumn {
+  std::string cell;       // its name in the file
   std::size_t place = 0;  // index of its cell in a row
   Measurable range;       // in the file's unit
-  bool rate = false;      // a rate or reference rate
-  bool kept = true;       // false: it is only checked
 };
 
 // Range in the unit of the column's name: rates as in the driver interface, channels by their unit (no
@@ -34,5 +35,16 @@ Measurable measurable(const std::string& column);
 // The same for a column of a file, in the file's unit. Angles have a wide range.
 Measurable measurable_in_file(const CsvColumn& column);
 Measurable measurable_in_file(const CsvTime& time);
+
+// Removes units in which no sensor measures one of the values, unless that leaves none. range_in: of a unit.
+template <typename RangeIn>
+void keep_measurable(std::vector<std::string>& units, const std::vector<double>& values, RangeIn range_in) {
+  std::vector<std::string> possible = units;
+  std::erase_if(possible, [&](const std::string& unit) {
+    const Measurable range = range_in(unit);
+    return !std::ranges::all_of(values, [&](double value) { return range.holds(value); });
+  });
+  if (!possible.empty()) units = std::move(possible);
+}
 
 }  // namespace ifog

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/columns/readings.h"
 #include "drivers/capture/csv/table_form.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
@@ -17,19 +17,6 @@
 
 namespace ifog {
 namespace {
-
-// Index of a column given by its header or number ("#3").
-std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
-                     const std::string& path, std::size_t line) {
-  const auto count = std::ranges::count(names, wanted);
-  if (count == 1) return static_cast<std::size_t>(std::ranges::find(names, wanted) - names.begin());
-  const std::size_t number =
-      count == 0 && is_number_of_column(wanted) ? std::strtoul(wanted.c_str() + 1, nullptr, 10) : 0;
-  if (number >= 1 && number <= names.size()) return number - 1;
-  fail_at(path, line,
-          (count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
-              listed(names));
-}
 
 // The only name of a gyro among several sensors' names; else "".
 std::string the_gyro(std::set<std::string> names) {
@@ -49,7 +36,7 @@ class Chooser {
  public:
   Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines)
       : form_(std::move(form)),
-        names_(form_.sample.names),
+        names_(form_.sample.names()),
         path_(path),
         line_(!has_lines              ? 0
               : form_.header_line > 0 ? form_.header_line
@@ -58,10 +45,6 @@ class Chooser {
     header_.separator = form_.separator;
     header_.last_line = form_.last_line;
     for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
-    if (form_.rows_above > 0)
-      header_.notices.push_back(path_ + ": " + std::to_string(form_.rows_above) +
-                                " lines of numbers above line " + std::to_string(form_.last_line + 1) +
-                                " have several widths and are not read");
     if (form_.layout.only_header == layout.only_header) return;
     kinds_ = "of rows of several kinds are read those of --only " +
              shell_word(form_.layout.only_header + "=" + form_.layout.only_value);
@@ -70,6 +53,7 @@ class Chooser {
 
   CsvHeader choose() {
     header_.cells = names_;
+    named_ = reads_as_named();
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
@@ -78,42 +62,49 @@ class Chooser {
   }
 
  private:
+  // Index of a column given by its header or number ("#3").
   [[nodiscard]] std::size_t place(const std::string& wanted) const {
-    return place_of(wanted, names_, path_, line_);
+    const auto count = std::ranges::count(names_, wanted);
+    if (count == 1) return static_cast<std::size_t>(std::ranges::find(names_, wanted) - names_.begin());
+    const std::size_t number =
+        count == 0 && is_number_of_column(wanted) ? std::strtoul(wanted.c_str() + 1, nullptr, 10) : 0;
+    if (number >= 1 && number <= names_.size()) return number - 1;
+    fail((count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
+         listed(names_));
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
   // Rows of several sensors in turn, numbered or named by a column: if one name is a gyro's, only its rows
   // are read.
   void look_what_alternates() {
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      const Words words(names_[i]);
-      const std::vector<std::string>& cells = form_.sample.cells[i];
+    for (const TableColumn& column : form_.sample.columns) {
+      const Words& words = column.words;
+      const std::vector<std::string>& cells = column.cells;
       // A topic's name may begin with a slash. A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
       const bool is_text = std::ranges::all_of(cells, [](const std::string& cell) {
         return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0 || cell.starts_with('/');
       });
-      if (!is_text && !(words.have(Role::one) && words.axis.empty() && is_whole(cells))) continue;
+      if (!is_text && !(words.have(Role::one) && words.axis.empty() && column.are_counts())) continue;
       const std::set<std::string> values(cells.begin(), cells.end());
       std::size_t changes = 0;
       for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;
-      const std::string gyro = reads_as_named() ? "" : the_gyro(values);
+      const std::string gyro = named_ ? "" : the_gyro(values);
       if (values.size() < 2 || values.size() > 8 || (gyro.empty() && 2 * changes < cells.size())) continue;
       const std::string said =
-          in_quotes(names_[i]) + " is " + listed({values.begin(), values.end()}) + " in turn: ";
+          in_quotes(column.name) + " is " + listed({values.begin(), values.end()}) + " in turn: ";
       const std::string& other = *values.begin() == gyro ? *values.rbegin() : *values.begin();
       const auto option = [&](const std::string& value) {
-        return "--only " + shell_word(form_.sample.header_of(i) + "=" + value);
+        return "--only " + shell_word(column.header + "=" + value);
       };
       if (gyro.empty()) {
         kinds_ = said + "rows of several sensors; one of them: " + option(other) +
                  "; all as of one: " + option("*");
-        names_sensor_ = i;
+        names_sensor_ = &column;
         continue;
       }
       header_.notices.push_back(path_ + ": " + said + "only rows of " + in_quotes(gyro) +
                                 " are read; others: " + option(other));
-      header_.layout.only_header = form_.sample.header_of(i);
+      header_.layout.only_header = column.header;
       header_.layout.only_value = gyro;
       return;
     }
@@ -123,20 +114,17 @@ class Chooser {
   [[nodiscard]] bool are_rates_of_several() const {
     std::set<std::string> sensors;
     for (const FileColumn& column : header_.columns)
-      for (std::size_t row = 0; column.rate && row < form_.sample.cells[column.place].size(); ++row)
-        if (names_sensor_ && !form_.sample.cells[column.place][row].empty())
-          sensors.insert(form_.sample.cells[*names_sensor_][row]);
+      for (std::size_t row = 0;
+           names_sensor_ != nullptr && is_rate_column(column.name) && row < names_sensor_->cells.size();
+           ++row)
+        if (!form_.sample.columns[column.place].cells[row].empty()) sensors.insert(names_sensor_->cells[row]);
     return sensors.size() > 1;
   }
 
   // Only the rows that are read are used as first rows.
   void keep_only(std::size_t place) {
     header_.only_place = place;
-    const std::vector<std::string> which = form_.sample.cells[place];
-    for (std::vector<std::string>& cells : form_.sample.cells) {
-      std::size_t row = 0;
-      std::erase_if(cells, [&](const std::string&) { return which[row++] != header_.layout.only_value; });
-    }
+    form_.sample.keep_rows(place, header_.layout.only_value);
   }
 
   // Time first and a rate, or a table without any possible rate.
@@ -161,7 +149,7 @@ class Chooser {
 
   // Adds the unit from the row of units if the name has none.
   [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
-    const std::string unit = form_.sample.stated_unit(i);
+    const std::string& unit = form_.sample.columns[i].stated;
     const auto name = name_with_unit(names_[i], unit);
     if (!name)
       fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
@@ -173,11 +161,10 @@ class Chooser {
 
   void choose_columns() {
     CsvLayout& layout = header_.layout;
-    const bool named = reads_as_named();
-    if (named) expect_every_name_once();
+    if (named_) expect_every_name_once();
     // With only --time, other columns keep their names.
     const bool own_names =
-        named || (layout.time && layout.columns.empty() && std::ranges::any_of(names_, is_rate_column));
+        named_ || (layout.time && layout.columns.empty() && std::ranges::any_of(names_, is_rate_column));
     if (!layout.time && !layout.sample_rate_hz && std::ranges::count(names_, "time_s") == 1)
       layout.time = CsvTime{};
     if (own_names) {
@@ -190,7 +177,7 @@ class Chooser {
       layout.time.reset();
     else
       take_time(*layout.time);
-    if (layout.other_rates && !named)
+    if (layout.other_rates && !named_)
       for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
@@ -205,8 +192,8 @@ class Chooser {
   // By the row of units or the name, if it becomes the capture's unit. A rate named in deg is often in deg/s.
   [[nodiscard]] std::string own_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
-    column.unit = form_.sample.unit_of(at);
-    if (column.angle_rad() && form_.sample.stated_unit(at).empty())
+    column.unit = form_.sample.columns[at].unit;
+    if (column.angle_rad() && form_.sample.columns[at].stated.empty())
       fail(in_quotes(column.header) + " is in " + in_quotes(column.unit) +
            " by its name, and no unit was given; to read it so: " + option_for(column, column.unit));
     return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
@@ -237,23 +224,20 @@ class Chooser {
   // Names columns of numbers that are not read, except times and counts of the rows, and how one of them is read that a
   // rate table was commanded, or that names no axis.
   void tell_not_read(const TableReading& reading) {
-    const TableSample& sample = form_.sample;
-    const std::string count = counting_column(sample);
+    const std::string count = form_.sample.counting();
     std::vector<std::string> left;
     std::string rate;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      const std::string header = sample.header_of(i);
+    for (const TableColumn& column : form_.sample.columns) {
       const bool is_read = std::ranges::any_of(
-          reading.layout.columns, [&](const CsvColumn& column) { return column.header == header; });
-      const Words words(names_[i]);
-      const bool is_time = header == reading.layout.time.value_or(CsvTime{}).header ||
-                           time_unit(sample.unit_of(i)) || words.have(Role::no_time) ||
-                           words.have(Role::time);
-      if (is_read || is_time || !are_numbers(sample.cells[i]) || names_[i] == count) continue;
-      left.push_back(header);
-      if (!words.have(Role::truth) || !angle_unit(sample.unit_of(i), true, false)) continue;
-      const CsvColumn reference{"reference_" + reading.layout.columns.front().name, header, ""};
-      rate = "; as the true rate: " + reading.options + " " + option_for(reference, sample.unit_of(i));
+          reading.layout.columns, [&](const CsvColumn& chosen) { return chosen.header == column.header; });
+      const bool is_time = column.header == reading.layout.time.value_or(CsvTime{}).header ||
+                           time_unit(column.unit) || column.words.have(Role::no_time) ||
+                           column.words.have(Role::time);
+      if (is_read || is_time || !column.is_numeric() || column.name == count) continue;
+      left.push_back(column.header);
+      if (!column.words.have(Role::truth) || !angle_unit(column.unit, true, false)) continue;
+      const CsvColumn reference{"reference_" + reading.layout.columns.front().name, column.header, ""};
+      rate = "; as the true rate: " + reading.options + " " + option_for(reference, column.unit);
     }
     const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;
     left.resize(named);
@@ -276,45 +260,40 @@ class Chooser {
       return is_number_of_column(name) || std::ranges::count(names_, name) > 0;
     });
     header_.time_place = place(parts.front());
-    if (const std::string unit = form_.sample.unit_of(header_.time_place);
-        parts.size() == 1 && time.unit.empty() && time_unit(unit).value_or(1.0) != 1.0)
-      time.unit = unit;
+    const TableColumn& column = form_.sample.columns[header_.time_place];
     if (parts.size() > 1) {
       header_.time_part = place(parts.back());
-      header_.part_digits =
-          digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
+      header_.part_digits = digits_of_second(form_.sample.columns[header_.time_part]);
+    } else {
+      if (time.unit.empty() && time_unit(column.unit).value_or(1.0) != 1.0) time.unit = column.unit;
+      if (const std::string notice = whole_times_notice(column, time); !notice.empty())
+        header_.notices.push_back(path_ + ": " + notice);
     }
-    if (const std::string notice = whole_times_notice(form_.sample, header_.time_place, time);
-        parts.size() == 1 && !notice.empty())
-      header_.notices.push_back(path_ + ": " + notice);
-    const std::vector<std::string>& cells = form_.sample.cells[header_.time_place];
     const std::optional<DateOrder> order = time.unit == kDayFirst     ? DateOrder::day_first
                                            : time.unit == kMonthFirst ? DateOrder::month_first
-                                                                      : date_order(cells);
+                                                                      : date_order(column.cells);
     header_.date_order = order.value_or(DateOrder::month_first);
     if (!order)
-      header_.notices.push_back(path_ + ": " + printable(names_[header_.time_place]) + " is " +
-                                in_quotes(cells[0]) +
+      header_.notices.push_back(path_ + ": " + printable(column.name) + " is " + in_quotes(column.cells[0]) +
                                 " at first and read with the month first; if that is the day: " +
                                 option_for(CsvTime{time.header, kDayFirst}));
   }
 
   void take(std::size_t at, const CsvColumn& column) {
-    const bool rate = is_rate_column(column.name);
-    if (rate && ++rates_ > kInputLimits.csv_rates)
+    if (is_rate_column(column.name) && ++rates_ > kInputLimits.csv_rates)
       fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
-    header_.names.push_back(column.name);
-    header_.columns.push_back({names_[at], at, measurable_in_file(column), rate});
+    header_.columns.push_back({column, names_[at], at, measurable_in_file(column)});
   }
 
   TableForm form_;
-  const std::vector<std::string>& names_;
+  const std::vector<std::string> names_;
   const std::string& path_;
   const std::size_t line_;  // of the header; 0: none
   CsvHeader header_;
   std::size_t rates_ = 0;
-  std::string kinds_;                        // what is said of rows of several kinds or sensors
-  std::optional<std::size_t> names_sensor_;  // the column that names the sensors of rows in turn
+  std::string kinds_;                          // what is said of rows of several kinds or sensors
+  const TableColumn* names_sensor_ = nullptr;  // the column that names the sensors of rows in turn
+  bool named_ = false;                         // it is a capture
 };
 
 }  // namespace

@@ -19,8 +19,7 @@ struct CsvHeader {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   std::vector<std::string> cells;   // names of a row's cells in the file
-  std::vector<std::string> names;   // of the capture's columns without the time
-  std::vector<FileColumn> columns;  // source of each column
+  std::vector<FileColumn> columns;  // of the capture, without the time
   CsvLayout layout;                 // layout used
   char separator = ',';
   std::string comments;            // lines before the header, as in RowNotes

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "drivers/capture/checks/row_checks.h"
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/time_stamps.h"
@@ -80,35 +80,27 @@ struct RowTime {
 // Appends rows to the columns of a piece.
 class Rows {
  public:
-  Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps)
+  // most: expected number of rows. Reused columns keep their memory.
+  Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps, std::size_t most)
       : piece_(piece),
         header_(header),
         separator_(header.separator),
         stamps_(stamps),
         unit_s_(header.layout.time.value_or(CsvTime{}).unit_s()) {
-    piece_.rows.columns.resize(header.names.size());
-    piece_.impossible.resize(header.names.size());
+    piece_.rows.keep_first(0);
+    piece_.rows.time_s.reserve(most);
+    piece_.rows.lines.reserve(most);
+    piece_.rows.columns.resize(header.columns.size());
+    for (std::vector<double>& column : piece_.rows.columns) column.reserve(most);
+    piece_.impossible.resize(header.columns.size());
     to_.resize(header.cells.size());
     for (std::size_t c = 0; c < header.columns.size(); ++c) {
-      Place& to = to_[header.columns[c].place];
-      to.means = is_other_rate(header.names[c]) ? Meaning::kOther : Meaning::kNumber;
-      to.range = header.columns[c].range;
-      to.values = header.columns[c].kept ? &piece_.rows.columns[c] : nullptr;
-      to.impossible = &piece_.impossible[c];
+      const FileColumn& column = header.columns[c];
+      Fault* const impossible = is_other_rate(column.name) ? nullptr : &piece_.impossible[c];
+      to_[column.place] = {column.range, &piece_.rows.columns[c], impossible};
     }
     if (header.time_place != CsvHeader::kNone) to_[header.time_place].time = &time_.whole;
     if (header.time_part != CsvHeader::kNone) to_[header.time_part].time = &time_.part;
-  }
-
-  // Reused columns keep their memory.
-  void begin(std::size_t rows) {
-    piece_.rows.time_s.clear();
-    piece_.rows.time_s.reserve(rows);
-    piece_.rows.lines.clear();
-    piece_.rows.lines.reserve(rows);
-    for (std::vector<double>& column : piece_.rows.columns) column.clear();
-    for (const Place& place : to_)
-      if (place.values != nullptr) place.values->reserve(rows);
   }
 
   // ended: the line is complete.
@@ -154,48 +146,40 @@ class Rows {
     piece_.rows.lines.push_back(number);
   }
 
-  // kOther: not chosen, so text is a missing value and no fault.
-  enum class Meaning : unsigned char { kNothing, kOther, kNumber };
   struct Place {
-    Meaning means = Meaning::kNothing;
     Measurable range{};
-    std::vector<double>* values = nullptr;  // null: not needed
-    Fault* impossible = nullptr;
+    std::vector<double>* values = nullptr;  // null: not a column of the capture
+    Fault* impossible = nullptr;       // null: it was not chosen, so text is a missing value and no fault
     std::string_view* time = nullptr;  // cell of a time
   };
 
   // Parses the cell from `at` in a row that ends at `end`; returns the cell's end.
   const char* take(std::size_t place, const char* at, const char* end, std::size_t line) {
     const Place& to = to_[place];
-    if (to.means == Meaning::kNumber) {
+    if (to.values != nullptr) {
       // Fast path: the cell is a plain number.
       double value = 0.0;
       const auto [behind, error] = std::from_chars(at, end, value);
-      if (error == std::errc() && (behind == end || *behind == separator_) && std::isfinite(value)) {
-        if (to.range.holds(value)) [[likely]] {
-          if (to.values != nullptr) to.values->push_back(value);
-        } else {
-          keep(place, value, {at, behind}, line);
-        }
+      if (error == std::errc() && (behind == end || *behind == separator_) && to.range.holds(value))
+          [[likely]] {
+        to.values->push_back(value);
         return behind;
       }
     }
     const char* const behind = at + cell_end({at, end}, separator_);
-    if (to.means == Meaning::kNothing && to.time == nullptr) return behind;
+    if (to.values == nullptr && to.time == nullptr) return behind;
     const std::string_view text = unquoted({at, behind});
     if (to.time != nullptr)
       *to.time = text;
-    else if (to.means == Meaning::kOther)
-      keep_other(to, PointDigits(text, separator_ != ','));
     else
-      keep(place, number(header_.cells[place], text, PointDigits(text, separator_ != ',')), text, line);
+      keep(place, text, line);
     return behind;
   }
 
   // A row without a time whose other columns are empty too.
   void of_another_sensor(std::string_view line) {
     for (std::size_t i = 0; i < to_.size(); ++i)
-      if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
+      if (to_[i].impossible != nullptr && !cell_at(line, i, separator_).empty())
         throw Unreadable{printable(header_.cells[header_.time_place]) + " is missing, expected a time"};
     drop();
     ++piece_.untimed;
@@ -220,11 +204,6 @@ class Rows {
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place];
     const TimeDigits digits(text, separator_ != ',', header_.date_order);
-    if (header_.date_order != DateOrder::either && !digits.is_date() && is_date(text))
-      throw Unreadable{
-          printable(name) + " is " + in_quotes(text) +
-          ", expected day and month in the order of the rows above, or " +
-          option_for(CsvTime{name, header_.date_order == DateOrder::day_first ? kMonthFirst : kDayFirst})};
     if (digits.is_date() && unit_s_ != 1.0)
       throw Unreadable{printable(name) + " is " + in_quotes(text) +
                        ", a date, which says its own unit, expected no other one of --time"};
@@ -238,16 +217,14 @@ class Rows {
     return true;
   }
 
-  static void keep_other(const Place& to, std::string_view digits) {
-    const double value = finite_number(digits).value_or(kMissing);
-    if (to.values != nullptr) to.values->push_back(to.range.holds(value) ? value : kMissing);
-  }
-
-  void keep(std::size_t place, double value, std::string_view text, std::size_t line) {
+  void keep(std::size_t place, std::string_view text, std::size_t line) {
     const Place& to = to_[place];
+    const PointDigits digits(text, separator_ != ',');
+    const double value = to.impossible != nullptr ? number(header_.cells[place], text, digits)
+                                                  : finite_number(digits).value_or(kMissing);
     const bool possible = std::isnan(value) || to.range.holds(value);
-    if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
-    if (!possible) to.impossible->add(line, std::string(text));
+    to.values->push_back(possible ? value : kMissing);
+    if (!possible && to.impossible != nullptr) to.impossible->add(line, std::string(text));
   }
 
   CsvPiece& piece_;
@@ -285,10 +262,9 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   CsvPiece piece;
   piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
-  Rows rows(piece, header, stamps);
   // Estimates the number of rows from the first row's length, at least one byte per column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
-  rows.begin(text.size() / length + text.size() / length / 16 + 1);
+  Rows rows(piece, header, stamps, text.size() / length + text.size() / length / 16 + 1);
   Lines lines(text);
   std::string_view line;
   while (lines.next(line)) {

@@ -2,7 +2,6 @@
 #include "drivers/capture/csv/csv_rows.h"
 
 #include <algorithm>
-#include <functional>
 #include <future>
 #include <optional>
 #include <stdexcept>
@@ -30,16 +29,14 @@ constexpr std::size_t kHead = std::size_t{256} << 10U;
 
 class CsvRows {
  public:
-  // were_rows: called with the number of bytes that were rows.
-  using WereRows = std::function<void(std::size_t)>;
   CsvRows(const ReadBytes& read, std::size_t piece, const std::string& path, const CsvLayout& layout,
-          RowSink& sink, RowsAre rows, WereRows were_rows)
+          RowSink& sink, RowsAre rows, InputFile* file = nullptr)
       : pieces_(read, piece),
         path_(path),
         layout_(layout),
         sink_(sink),
         has_lines_(rows == RowsAre::lines),
-        were_rows_(std::move(were_rows)) {}
+        file_(file) {}
 
   RowNotes read() {
     in_order(begin());
@@ -87,10 +84,11 @@ class CsvRows {
     notes_.comments = std::move(header_.comments);
     notes_.header_line = so_far_.lines;
     notes_.notices = std::move(header_.notices);
-    impossible_.resize(header_.names.size());
+    impossible_.resize(header_.columns.size());
     checks_.emplace(path_, header_.layout, header_.columns, sink_, notes_);
-    sink_.begin(header_.names);
-    for (std::size_t c = 0; c < header_.columns.size(); ++c) header_.columns[c].kept = sink_.wants(c);
+    std::vector<std::string> names;
+    for (const FileColumn& column : header_.columns) names.push_back(column.name);
+    sink_.begin(names);
     return std::string(lines.rest());
   }
 
@@ -141,7 +139,7 @@ class CsvRows {
     so_far_.lines += parsed.lines;
     so_far_.untimed += parsed.untimed;
     const std::size_t places = std::exchange(so_far_.places, so_far_.places + parsed.places);
-    were_rows_(parsed.row_bytes);
+    if (file_ != nullptr) file_->were_rows(parsed.row_bytes);
     // limit after which the search ends
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
@@ -168,7 +166,7 @@ class CsvRows {
   const CsvLayout& layout_;
   RowSink& sink_;
   const bool has_lines_;
-  const WereRows were_rows_;
+  InputFile* const file_;
   LineForm form_;
   CsvHeader header_;
   RowNotes notes_;
@@ -185,13 +183,12 @@ class CsvRows {
 
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece, RowsAre rows) {
-  return CsvRows(read, piece, path, layout, sink, rows, [](std::size_t) {}).read();
+  return CsvRows(read, piece, path, layout, sink, rows).read();
 }
 
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); };
-  const auto were_rows = [&file](std::size_t bytes) { file.were_rows(bytes); };
-  RowNotes notes = CsvRows(read, kTextPiece, file.path(), layout, sink, RowsAre::lines, were_rows).read();
+  RowNotes notes = CsvRows(read, kTextPiece, file.path(), layout, sink, RowsAre::lines, &file).read();
   if (file.ends_early())
     notes.faults.push_back(file.path() +
                            ": the gzip stream ends early (truncated file); the rows until there are read");

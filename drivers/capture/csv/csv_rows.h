@@ -15,11 +15,10 @@ namespace ifog {
 // Meaning of numbers in messages: lines, or rows counted from 1.
 enum class RowsAre { lines, numbered };
 
-// Throws std::runtime_error with one line: file, line, column, value, what was expected. Errors: first column not
-// time_s, time not increasing, a cell that is no number, a line with another number of cells, a .gz that ends early,
-// more than 1 % impossible values in a column. Fewer become missing (measurable.h) and are listed in `faults`. For
-// other headers `layout` is needed; if a header is nearly a capture's the message suggests the options. The sink may
-// have received rows before an error is found; angles that become rates arrive as one block.
+// Throws std::runtime_error with one line: file, line, column, value, what was expected, or the options that read the
+// file. Errors: time not increasing, a cell that is no number, a line with another number of cells, more than 1 %
+// impossible values in a column. Fewer become missing (measurable.h) and are listed in `faults`. The sink may have
+// received rows before an error is found; angles that become rates arrive as one block.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece = kTextPiece, RowsAre rows = RowsAre::lines);
 // The same for the rest of a file.

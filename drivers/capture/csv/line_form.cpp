@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/date_time.h"
 
@@ -90,12 +90,12 @@ struct Values {
   std::vector<std::string_view> numbers;
 };
 
-// End of a number that starts at `at`; `at` if there is none, as in "gyro2" and "0x68".
+// End of a number that starts at `at`; `at` if there is none, as in "gyro2", "0x68" and "0b11".
 std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
   if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
   std::string_view rest = line.substr(at);
-  if (rest.starts_with("0x")) return at;
+  if (rest.starts_with("0x") || rest.starts_with("0b")) return at;
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t digit = rest.find_first_not_of("-.");
   if (digit > 2 || !is_decimal(rest[digit])) return at;  // excludes "nan" and "inf"
@@ -104,15 +104,20 @@ std::size_t end_of_number(std::string_view line, std::size_t at) {
   return error == std::errc::invalid_argument ? at : static_cast<std::size_t>(end - line.begin());
 }
 
-// "gx" of ", gx: "; "" if there is no name.
+// "gx" of ", gx: ", "rate (rad)" of "  ok  rate (rad): "; "" if there is no name.
 std::string label_in(std::string_view between) {
   if (between.find_first_of(":=") == std::string_view::npos) return "";
   constexpr std::string_view kAround = " \t,;|:={}[]()\"'";
   const std::size_t begin = between.find_first_not_of(kAround);
   if (begin == std::string_view::npos) return "";
-  std::string_view label = between.substr(begin, between.find_last_not_of(kAround) - begin + 1);
-  if (const std::size_t other = label.find_last_of(",;|:="); other != std::string_view::npos)
-    label.remove_prefix(std::min(label.find_first_not_of(" \"'", other + 1), label.size()));  // "RAW: gyro"
+  std::size_t behind = between.find_last_not_of(kAround) + 1;
+  if (between.substr(begin, behind - begin).find('(') != std::string_view::npos && between[behind] == ')')
+    ++behind;
+  std::string_view label = between.substr(begin, behind - begin);
+  const std::size_t other = label.find_last_of(",;|:="), gap = label.rfind("  ");
+  for (const std::size_t end : {other, gap == std::string_view::npos ? gap : gap + 1})
+    if (end < label.size())
+      label.remove_prefix(std::min(label.find_first_not_of(" \"'", end + 1), label.size()));  // "RAW: gyro"
   return std::ranges::any_of(label, is_alphabetic) ? std::string(label) : "";
 }
 
@@ -133,10 +138,14 @@ Values values_in(std::string_view line) {
   return out;
 }
 
-// One name per value, or per three values as axes; empty if a value has no name.
+// One name per value, or per three values as axes; empty if a value has no name, except before three that are named.
 std::vector<std::string> names_by(const std::vector<std::string>& labels) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < labels.size();) {
+  const auto named = std::ranges::find_if(labels, [](const std::string& label) { return !label.empty(); });
+  const auto first = static_cast<std::size_t>(named - labels.begin());
+  if (first > 0 && (labels.end() - named < 3 || named[1] != "" || named[2] != "")) return {};
+  for (std::size_t i = 0; i < first; ++i) names.push_back("#" + std::to_string(i + 1));
+  for (std::size_t i = first; i < labels.size();) {
     std::size_t end = i + 1;
     while (end < labels.size() && labels[end].empty()) ++end;
     if (labels[i].empty() || (end - i != 1 && end - i != 3)) return {};

@@ -244,30 +244,32 @@ bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   return false;
 }
 
-// First rows as cells by column.
-void sample_rows(const Grid& grid, std::size_t from, TableSample& sample) {
-  sample.cells.assign(sample.names.size(), {});
-  for (std::size_t i = from; i < grid.rows().size() && sample.cells[0].size() < Grid::kSampleRows; ++i) {
+// Cells of the first rows, by column.
+std::vector<std::vector<std::string>> first_cells(const Grid& grid, std::size_t from, std::size_t columns) {
+  std::vector<std::vector<std::string>> cells(columns);
+  for (std::size_t i = from; i < grid.rows().size() && cells[0].size() < Grid::kSampleRows; ++i) {
     const Row& row = grid.rows()[i];
-    if (row.comment || !row.is_as_wide(sample.names.size())) continue;
-    for (std::size_t c = 0; c < sample.names.size(); ++c) {
+    if (row.comment || !row.is_as_wide(columns)) continue;
+    for (std::size_t c = 0; c < columns; ++c) {
       const std::string cell = c < row.cells.size() ? row.cells[c] : "";
       const TimeDigits digits(cell, grid.separator() != ',');
-      sample.cells[c].emplace_back(digits.is_date() ? std::string_view(cell) : std::string_view(digits));
+      cells[c].emplace_back(digits.is_date() ? std::string_view(cell) : std::string_view(digits));
     }
   }
+  return cells;
 }
 
-// Chooses the first possible header with which the table can be read, or that has the requested names. False:
-// no header.
-bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayout& layout, TableForm& form) {
-  TableSample& sample = form.sample;
+// Chooses the first possible header with which the table can be read, or that has the requested names. units: of the
+// columns, if a head of the file has them. False: no header.
+bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayout& layout,
+                 const std::vector<std::string>& units, TableForm& form) {
   const auto take = [&](const Header& header) {
     form.header_line = lines[header.at].number;
     form.last_line = lines[header.last].number;
-    sample.names = header.names;
-    sample.units = header.units;
-    sample_rows(grid, header.last + 1, sample);
+    const std::size_t columns = header.names.size();
+    form.sample.named = !are_of_one_matrix(header.names);
+    form.sample.set(header.names, units.size() >= columns ? units : header.units,
+                    first_cells(grid, header.last + 1, columns));
   };
   const std::vector<std::string> wanted = wanted_names(layout);
   const std::vector<Header> above = grid.first() ? headers_above(lines, grid) : std::vector<Header>();
@@ -277,7 +279,7 @@ bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayo
   if (above.empty()) return false;
   const bool found = std::ranges::any_of(above, [&](const Header& header) {
     take(header);
-    return !readings_of(sample, layout).ways.empty();
+    return !readings_of(form.sample, layout).ways.empty();
   });
   if (!found) take(above.front());
   return true;
@@ -313,26 +315,22 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
       fail_at(path, lines[i].number,
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
-  bool headed = given.empty() && take_header(lines, grid, layout, form);
+  bool headed = given.empty() && take_header(lines, grid, layout, units, form);
   if (!headed && given.empty() && grid.first() && layout.only_header.empty())
-    headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, form);
-  if (headed) {
-    if (units.size() >= sample.names.size())
-      sample.units.assign(units.begin(), units.begin() + std::ssize(sample.names));
-    sample.named = !are_of_one_matrix(sample.names);
-  } else if (grid.first()) {
+    headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, units, form);
+  if (!headed && grid.first()) {
     sample.named = !given.empty();
-    sample.names = given;
+    std::vector<std::string> names = given;
     for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
-      sample.names.push_back("#" + std::to_string(i + 1));
+      names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
-    sample_rows(grid, *grid.first(), sample);
+    sample.set(names, {}, first_cells(grid, *grid.first(), names.size()));
     if (const Row* const above = *grid.first() > 0 ? &grid.rows()[*grid.first() - 1] : nullptr;
         above != nullptr && !above->comment && above->values == 0 && above->cells.size() > 1) {
       form.header_line = lines[*grid.first() - 1].number;
       form.unused_names = above->cells.size();
     }
-  } else {
+  } else if (!headed) {
     fail_at(path, plain->number,
             "no table found, expected a header 'time_s,rate_radps,…' and rows of numbers below; the first "
             "line is " +
@@ -342,9 +340,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     const Line& line = lines[i];
     const Row& row = grid.rows()[i];
     if (line.number > form.last_line || (headed && line.number == form.header_line)) break;
-    if (!headed && !row.comment && row.values == row.cells.size())
-      ++form.rows_above;
-    else
+    if (headed || row.comment || row.values < row.cells.size())
       sample.comments.emplace_back(row.comment ? trimmed(trimmed(line.text).substr(1)) : trimmed(line.text));
   }
   return form;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/columns/readings.h"
 
 namespace ifog {
 
@@ -15,7 +15,6 @@ struct TableForm {
   char separator = ',';
   std::size_t header_line = 0;   // from 1; 0 without a header
   std::size_t last_line = 0;     // last line before the first row: header or row of units
-  std::size_t rows_above = 0;    // lines of numbers before the first row, if there is no header
   CsvLayout layout;              // as given, with the kind of rows in a log of several kinds without a header
   std::size_t unused_names = 0;  // in the header, if rows have another number of cells; else 0
   TableSample sample;            // names, units, first rows, preamble

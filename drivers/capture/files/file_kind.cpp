@@ -2,6 +2,7 @@
 #include "drivers/capture/files/file_kind.h"
 
 #include <array>
+#include <set>
 
 namespace ifog {
 namespace {
@@ -40,19 +41,14 @@ std::string foreign_json(std::string_view head) {
     return "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] "
            "| @csv', with the names of this file, makes one";
   const bool one_line = head.find('\n', end) > inner;
-  bool kinds = false;
-  constexpr std::string_view kKind = "\"sensor\":";
-  std::string_view before;
-  for (std::size_t at = head.find(kKind); at != std::string_view::npos; at = head.find(kKind, at + 1)) {
-    const std::size_t behind = head.find_first_of(",}", at);
-    if (behind == std::string_view::npos) break;
-    const std::string_view kind = head.substr(at, behind - at);
-    kinds = kinds || (!before.empty() && kind != before);
-    before = kind;
-  }
-  if (!kinds && !one_line) return "";
-  return std::string("is JSON of ") + (kinds ? "several sensors" : "all rows in one line") +
-         ", expected a table; jq -r '.[] | " + (kinds ? "select(.sensor == \"Gyroscope\") | " : "") +
+  std::set<std::string_view> kinds;
+  for (std::size_t at = head.find("\"sensor\":"), behind = 0;
+       (behind = head.find_first_of(",}", at)) < head.size(); at = head.find("\"sensor\":", behind))
+    kinds.insert(head.substr(at, behind - at));
+  const bool several = kinds.size() > 1;
+  if (!several && !one_line) return "";
+  return std::string("is JSON of ") + (several ? "several sensors" : "all rows in one line") +
+         ", expected a table; jq -r '.[] | " + (several ? "select(.sensor == \"Gyroscope\") | " : "") +
          "[.time, .x, .y, .z] | @csv', with the names of this file, makes one";
 }
 

@@ -69,14 +69,10 @@ void demand_readable(hid_t properties, const std::string& name) {
 
 // Integers are kept, because a double may not hold a time in ns.
 Hdf5Value value_of(hid_t type) {
-  if (H5Tget_class(type) != H5T_INTEGER) return Hdf5Value::real;
-  return H5Tget_sign(type) == H5T_SGN_NONE ? Hdf5Value::natural : Hdf5Value::whole;
+  return H5Tget_class(type) == H5T_INTEGER ? Hdf5Value::whole : Hdf5Value::real;
 }
 
-hid_t in_memory(Hdf5Value value) {
-  if (value == Hdf5Value::real) return H5T_NATIVE_DOUBLE;
-  return value == Hdf5Value::natural ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64;
-}
+hid_t in_memory(Hdf5Value value) { return value == Hdf5Value::real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
 
 // One-dimensional, or a matrix with more rows than columns, in either orientation.
 struct Shape {
@@ -112,11 +108,11 @@ bool contains(const std::vector<std::string>& names, std::string_view name) {
 
 }  // namespace
 
-Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
+Hdf5Columns::Hdf5Columns(const Hdf5Wanted& wanted) {
   hdf5_silence();
   H5PLset_loading_state(0);  // no code is loaded
   if (wanted.group != "/") here_ = wanted.group;
-  open(source, here_.empty() ? "/" : here_);
+  open(wanted, here_.empty() ? "/" : here_);
   choose(wanted);
   comments_ = hdf5_texts(place_, kHdf5Comments, kMostComments, kLongestText);
   if (comments_.empty() && H5Aexists(place_, kHdf5Comments) > 0)
@@ -124,7 +120,7 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   check_size(wanted);
 }
 
-void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
+void Hdf5Columns::open(const Hdf5Wanted& wanted, const std::string& group) {
   const Hdf5Id how(H5Pcreate(H5P_FILE_ACCESS));
   access_ = Hdf5Id(H5Pcreate(H5P_DATASET_ACCESS));
   // Works where files cannot be locked. Links must not leave the file.
@@ -134,13 +130,13 @@ void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
                   H5Pset_elink_cb(access_, stay, nullptr) >= 0 &&
                   H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, kMostKept, 1.0) >= 0,
               "the HDF5 library does not start");
-  const bool in_memory = !source.image.empty();
-  if (in_memory)
+  const std::span<const char> image = wanted.image;
+  if (!image.empty())
     hdf5_demand(H5Pset_fapl_core(how, 1U << 20U, false) >= 0 &&
-                    H5Pset_file_image(how, const_cast<char*>(source.image.data()), source.image.size()) >= 0,
+                    H5Pset_file_image(how, const_cast<char*>(image.data()), image.size()) >= 0,
                 "no memory for it");
   // An image needs a name that no file has.
-  file_ = Hdf5Id(H5Fopen(in_memory ? "/dev/null/image" : source.name.c_str(), H5F_ACC_RDONLY, how));
+  file_ = Hdf5Id(H5Fopen(image.empty() ? wanted.path.c_str() : "/dev/null/image", H5F_ACC_RDONLY, how));
   hdf5_demand(file_.good(), "cannot be read as HDF5");
   place_ = Hdf5Id(H5Oopen(file_, group.c_str(), access_));
   if (!place_.good()) {
@@ -192,7 +188,7 @@ void Hdf5Columns::choose(const Hdf5Wanted& wanted) {
     for (Hdf5Column& column : dataset)
       if ((capture || column.rows == rows) && !contains(asked, column.name)) add(std::move(column));
   if (!groups_.empty() && !columns_.empty())
-    notices_.push_back("not read: the groups of " + list_of(groups_));
+    notices_.push_back("not read: the groups and tables of " + list_of(groups_));
 }
 
 // Members of records, or all links of the group except groups. Anything that is no dataset is rejected when
@@ -234,10 +230,18 @@ std::vector<std::string> Hdf5Columns::names_here() {
     H5O_info_t object{};
     const bool is_group = H5Oget_info_by_name2(place_, name.data(), &object, H5O_INFO_BASIC, access_) >= 0 &&
                           object.type == H5O_TYPE_GROUP;
-    is_group ? groups_.push_back("--group " + shell_word(here_ + "/" + name.data()))
-             : names.push_back(name.data());
+    if (is_group || is_table(name.data()))
+      groups_.push_back("--group " + shell_word(here_ + "/" + name.data()));
+    if (!is_group) names.emplace_back(name.data());
   }
   return names;
+}
+
+// Records, as of PyTables.
+bool Hdf5Columns::is_table(const char* name) const {
+  const Hdf5Id object(H5Oopen(place_, name, access_));
+  if (!object.good() || H5Iget_type(object) != H5I_DATASET) return false;
+  return H5Tget_class(Hdf5Id(H5Dget_type(object))) == H5T_COMPOUND;
 }
 
 bool Hdf5Columns::has(const std::string& name) const {
@@ -344,8 +348,8 @@ void Hdf5Columns::add(Hdf5Column column) {
 
 void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
   if (columns_.empty())
-    refuse("no dataset in the group " + in_quotes(here_.empty() ? "/" : here_) +
-           (groups_.empty() ? "" : "; its groups are read by " + list_of(groups_)));
+    refuse("no dataset of numbers in the group " + in_quotes(here_.empty() ? "/" : here_) +
+           (groups_.empty() ? "" : "; its groups and tables are read by " + list_of(groups_)));
   if (rows() == 0) refuse("no rows in its datasets");
   std::uint64_t stored = 0;
   for (const Hdf5Column& column : columns_) stored += column.rows * column.value_bytes;

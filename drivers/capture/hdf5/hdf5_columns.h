@@ -15,13 +15,9 @@
 
 namespace ifog {
 
-// A file by name or in memory.
-struct Hdf5Source {
-  std::string name;
-  std::span<const char> image;  // empty: the named file
-};
-
 struct Hdf5Wanted {
+  std::string path;                // of the file
+  std::span<const char> image{};   // its content, if it has no name; else empty
   std::string group;               // path of the group or table; "": root
   std::vector<std::string> names;  // dataset paths or members; "sec+nsec": two of them
   bool others = true;              // other columns are read, too
@@ -29,7 +25,7 @@ struct Hdf5Wanted {
 };
 
 // Representation of a value in 8 bytes; integers keep all digits.
-enum class Hdf5Value { real, whole, natural, ns };  // ns: integer, written in seconds
+enum class Hdf5Value { real, whole, ns };  // ns: integer, written in seconds
 
 struct Hdf5Column {
   std::string name, unit;  // unit: attribute `units`, or ""
@@ -44,7 +40,7 @@ struct Hdf5Column {
 class Hdf5Columns {
  public:
   // Throws std::runtime_error with one line, without the file's name, if the file is not suitable.
-  Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted);
+  explicit Hdf5Columns(const Hdf5Wanted& wanted);
 
   // The requested columns, then the others in the file's order or sorted.
   [[nodiscard]] const std::vector<Hdf5Column>& columns() const { return columns_; }
@@ -55,13 +51,14 @@ class Hdf5Columns {
   [[nodiscard]] std::size_t block_rows() const;
   // Size of the largest chunk, unpacked.
   [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
-  // Reads rows of a column from `first` on as double, int64 or uint64. Throws likewise.
+  // Reads rows of a column from `first` on as double or int64. Throws likewise.
   void read(const Hdf5Column& column, std::uint64_t first, std::span<std::uint64_t> to) const;
 
  private:
-  void open(const Hdf5Source& source, const std::string& group);
+  void open(const Hdf5Wanted& wanted, const std::string& group);
   void choose(const Hdf5Wanted& wanted);
   [[nodiscard]] std::vector<std::string> names_here();
+  [[nodiscard]] bool is_table(const char* name) const;
   [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] bool has_exact_time() const;
   // Columns of a member of the group or table. Throws std::runtime_error with one line if it is none.

@@ -19,8 +19,8 @@ void write_texts(hid_t object, const char* name, const Hdf5Id& space, const std:
   std::vector<const char*> at;
   at.reserve(texts.size());
   for (const std::string& text : texts) at.push_back(text.c_str());
-  const bool made =
-      type.good() && H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
+  const bool made = type.good() && space.good() && H5Tset_size(type, H5T_VARIABLE) >= 0 &&
+                    H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
   const Hdf5Id attribute(made ? H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT)
                               : H5I_INVALID_HID);
   hdf5_demand(attribute.good() && H5Awrite(attribute, type, at.data()) >= 0,
@@ -65,15 +65,11 @@ std::string hdf5_unit(hid_t dataset) {
 
 void set_hdf5_texts(hid_t object, const char* name, const std::vector<std::string>& texts) {
   const hsize_t count = texts.size();
-  const Hdf5Id space(H5Screate_simple(1, &count, nullptr));
-  hdf5_demand(space.good(), std::string("cannot write the attribute ") + name);
-  write_texts(object, name, space, texts);
+  write_texts(object, name, Hdf5Id(H5Screate_simple(1, &count, nullptr)), texts);
 }
 
 void set_hdf5_text(hid_t object, const char* name, const std::string& text) {
-  const Hdf5Id space(H5Screate(H5S_SCALAR));
-  hdf5_demand(space.good(), std::string("cannot write the attribute ") + name);
-  write_texts(object, name, space, {text});
+  write_texts(object, name, Hdf5Id(H5Screate(H5S_SCALAR)), {text});
 }
 
 }  // namespace ifog

@@ -45,7 +45,6 @@ struct Said {
 constexpr rlim_t kMostMemory = 2ULL << 30U;
 // Limits of processor time per block and of the speed of unpacking.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
-constexpr std::size_t kPiece = 1U << 16U;                             // bytes of text, the capacity of a pipe
 
 std::string reason() { return std::generic_category().message(errno); }
 
@@ -87,28 +86,10 @@ void allow_seconds(std::size_t chunk = 0) {
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-// Writes text to the pipe.
-class Pipe {
- public:
-  explicit Pipe(int fd) : fd_(fd) { text_.reserve(2 * kPiece); }
-  void add(std::string_view text) {
-    text_ += text;
-    if (text_.size() >= kPiece) flush();
-  }
-  void flush() {
-    for (std::string_view left = text_; !left.empty();) {
-      const ssize_t n = ::write(fd_, left.data(), left.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) throw std::runtime_error("nobody listens");
-      left.remove_prefix(static_cast<std::size_t>(n));
-    }
-    text_.clear();
-  }
-
- private:
-  int fd_;
-  std::string text_;
-};
+void put(const std::string& text, std::FILE* out) {
+  if (std::fwrite(text.data(), 1, text.size(), out) != text.size())
+    throw std::runtime_error("nobody listens");
+}
 
 // As in a comment of a CSV file.
 std::string one_line(std::string text) {
@@ -117,8 +98,8 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void print_head(const Hdf5Columns& columns, Pipe& out) {
-  for (const std::string& comment : columns.comments()) out.add("# " + one_line(comment) + "\n");
+void print_head(const Hdf5Columns& columns, std::FILE* out) {
+  for (const std::string& comment : columns.comments()) put("# " + one_line(comment) + "\n", out);
   std::string names, units;
   bool any_unit = false;
   for (const Hdf5Column& column : columns.columns()) {
@@ -128,14 +109,13 @@ void print_head(const Hdf5Columns& columns, Pipe& out) {
     names += (names.empty() ? "" : ",") + as_cell(one_line(column.name));
     units += (units.empty() ? "" : ",") + (known ? as_cell(column.unit) : "-");
   }
-  out.add(names + "\n");
-  if (any_unit) out.add(units + "\n");
+  put(names + "\n", out);
+  if (any_unit) put(units + "\n", out);
 }
 
 char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
   const auto whole = static_cast<std::int64_t>(bits);
   if (value == Hdf5Value::real) return std::to_chars(at, end, std::bit_cast<double>(bits)).ptr;
-  if (value == Hdf5Value::natural) return std::to_chars(at, end, bits).ptr;
   if (value == Hdf5Value::whole) return std::to_chars(at, end, whole).ptr;
   const std::uint64_t ns = whole < 0 ? 0 - bits : bits;
   if (whole < 0) *at++ = '-';
@@ -147,9 +127,10 @@ char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
   return at;
 }
 
-void print_rows(const Hdf5Columns& columns, Pipe& out, std::atomic<std::uint64_t>& done) {
+void print_rows(const Hdf5Columns& columns, std::FILE* out, std::atomic<std::uint64_t>& done) {
   const std::size_t count = columns.columns().size(), most = columns.block_rows();
   std::vector<std::vector<std::uint64_t>> values(count);
+  std::string line;
   std::array<char, 32> text{};  // the longest double has 24 characters
   for (std::uint64_t first = 0; first < columns.rows(); first += most) {
     for (std::size_t c = 0; c < count; ++c) {
@@ -157,13 +138,16 @@ void print_rows(const Hdf5Columns& columns, Pipe& out, std::atomic<std::uint64_t
       allow_seconds(std::max(columns.chunk_bytes(), values[c].size() * sizeof(double)));
       columns.read(columns.columns()[c], first, values[c]);
     }
-    for (std::size_t row = 0; row < values[0].size(); ++row)
+    for (std::size_t row = 0; row < values[0].size(); ++row) {
+      line.clear();
       for (std::size_t c = 0; c < count; ++c) {
         char* const end =
             print(text.data(), text.data() + text.size() - 1, values[c][row], columns.columns()[c].value);
         *end = c + 1 == count ? '\n' : ',';
-        out.add({text.data(), end + 1});
+        line.append(text.data(), end + 1);
       }
+      put(line, out);
+    }
     done = first + values[0].size();
   }
 }
@@ -181,12 +165,9 @@ class Hdf5Text {
   // The file must outlive this object. Throws std::runtime_error with one line.
   Hdf5Text(InputFile& file, Hdf5Wanted wanted) : file_(file) {
     struct stat info {};
-    if (file.reopens() && stat(file.path().c_str(), &info) == 0) {
-      wanted.file_bytes = static_cast<std::uint64_t>(info.st_size);
-    } else {
-      image_ = file.bytes();
-      wanted.file_bytes = image_.size();
-    }
+    if (!file.reopens() || stat(file.path().c_str(), &info) != 0) image_ = file.bytes();
+    wanted.image = image_;
+    wanted.file_bytes = image_.empty() ? static_cast<std::uint64_t>(info.st_size) : image_.size();
     void* const shared =
         mmap(nullptr, sizeof(Said), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED) throw std::runtime_error(file.path() + ": no memory: " + reason());
@@ -195,7 +176,7 @@ class Hdf5Text {
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(file.path() + ": no pipe: " + reason());
     pipe_ = ends[0];
     reader_ = fork();
-    if (reader_ == 0) print({file.path(), image_}, wanted, ends[1]);
+    if (reader_ == 0) print(wanted, ends[1]);
     ::close(ends[1]);
     if (reader_ > 0) return;
     ::close(pipe_);
@@ -240,19 +221,19 @@ class Hdf5Text {
   };
 
   // Runs in the separate process. Never returns, so destructors and buffers of the parent are not run twice.
-  [[noreturn]] void print(const Hdf5Source& source, const Hdf5Wanted& wanted, int to) {
-    shut_in(source.image.size());
+  [[noreturn]] void print(const Hdf5Wanted& wanted, int to) {
+    shut_in(wanted.image.size());
     allow_seconds();
     try {
-      const Hdf5Columns columns(source, wanted);
+      const Hdf5Columns columns(wanted);
       said_->rows = columns.rows();
       std::string notices;
       for (const std::string& notice : columns.notices()) notices += one_line(notice) + '\n';
       keep(notices, said_->notices);
-      Pipe out(to);
+      std::FILE* const out = fdopen(to, "w");
       print_head(columns, out);
       print_rows(columns, out, said_->rows_done);
-      out.flush();
+      if (std::fflush(out) != 0) throw std::runtime_error("nobody listens");
     } catch (const std::exception& error) {
       keep(error.what(), said_->refusal);
       _exit(1);
@@ -270,7 +251,7 @@ class Hdf5Text {
 }  // namespace
 
 RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayout& layout, RowSink& sink) {
-  Hdf5Wanted wanted{group, {}, true, 0};
+  Hdf5Wanted wanted{file.path(), {}, group, {}, true, 0};
   const auto ask = [&](const std::string& header) {
     const bool number = is_number_of_column(header);
     if (!header.empty() && !number) wanted.names.push_back(header);

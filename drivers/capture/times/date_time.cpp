@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "drivers/capture/times/text_cursor.h"
 #include "drivers/ifog/decimal.h"
@@ -27,12 +28,16 @@ struct Moment {
   std::string_view fraction;  // decimal digits
 };
 
-// hh:mm, hh:mm:ss or hh:mm:ss.f…, in twelve hours with AM or PM
+// hh:mm, hh:mm:ss or hh:mm:ss.f…, in twelve hours with AM or PM; mm:ss.f…, as spreadsheets show it
 bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
   if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
-  const bool seconds_given = rest.one_of(":_");
-  if (seconds_given ? !rest.number(2, 2, seconds) : seconds_needed) return false;
+  bool seconds_given = rest.one_of(":_");
+  if (!seconds_given && seconds_needed && (rest.at('.') || rest.at(','))) {
+    seconds = std::exchange(minutes, std::exchange(hours, 0));
+    seconds_given = true;
+  } else if (seconds_given ? !rest.number(2, 2, seconds) : seconds_needed)
+    return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
   if (seconds_given && rest.one_of(".,")) {
     moment.fraction = rest.digits();
@@ -101,6 +106,20 @@ std::optional<Moment> moment_of(std::string_view text, DateOrder order) {
   return moment;
 }
 
+// The mark between groups of three digits, "," in "1,234.5" and "." in "1.234,5"; 0 if there is none, or it may be the
+// decimal mark.
+char mark_of_thousands(std::string_view cell) {
+  const std::size_t first = cell.find_first_of(",.");
+  const char mark = first < cell.size() ? cell[first] : '\0';
+  const std::size_t last = cell.rfind(mark), other = cell.find(mark == ',' ? '.' : ',');
+  if (first == last && other == std::string_view::npos) return '\0';
+  for (std::size_t at = first; at <= last && at < cell.size(); at += 4)
+    if (cell[at] != mark || cell.substr(at + 1, 4).find_first_not_of("0123456789") < 3 ||
+        at + 4 > cell.size())
+      return '\0';
+  return last < other ? mark : '\0';
+}
+
 }  // namespace
 
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to, DateOrder order) {
@@ -133,7 +152,9 @@ PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(ce
   const std::string_view typographic = "\xE2\x88\x92";
   if (cell.size() > made_.size() || cell.find_first_of(",Dd\xE2") == std::string_view::npos) return;
   char* end = made_.data();
+  const char grouping = cell.find(',') < cell.size() ? mark_of_thousands(cell) : '\0';
   for (std::size_t i = 0; i < cell.size(); ++i) {
+    if (grouping != '\0' && cell[i] == grouping) continue;
     const bool minus = cell.substr(i).starts_with(typographic);
     *end++ = minus                              ? '-'
              : cell[i] == ',' && decimal_comma  ? '.'

@@ -32,7 +32,8 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
 // The number if the whole text is a finite number; else nullopt.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
-// Cell with a decimal point instead of a comma, an ASCII minus sign, and E for the exponent's D of Fortran.
+// Cell with a decimal point instead of a comma, without marks of thousands ("1,234.5"), with an ASCII minus sign, and E
+// for the exponent's D of Fortran.
 class PointDigits {
  public:
   PointDigits(std::string_view cell, bool decimal_comma);

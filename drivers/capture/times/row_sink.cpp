@@ -33,15 +33,13 @@ void RowBlock::move_row(std::size_t from, std::size_t to) {
   if (from == to) return;
   time_s[to] = time_s[from];
   if (!lines.empty()) lines[to] = lines[from];
-  for (std::vector<double>& column : columns)
-    if (!column.empty()) column[to] = column[from];
+  for (std::vector<double>& column : columns) column[to] = column[from];
 }
 
 void RowBlock::keep_first(std::size_t rows) {
   time_s.resize(rows);
-  if (!lines.empty()) lines.resize(rows);
-  for (std::vector<double>& column : columns)
-    if (!column.empty()) column.resize(rows);
+  lines.resize(std::min(rows, lines.size()));
+  for (std::vector<double>& column : columns) column.resize(rows);
 }
 
 void RowBatch::begin(const std::vector<std::string>& names) {

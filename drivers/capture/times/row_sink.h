@@ -51,7 +51,7 @@ struct Fault {
 // Consecutive rows, by column.
 struct RowBlock {
   std::vector<double> time_s;  // strictly increasing, also between blocks; never NaN
-  // In the order of the names, each as long as time_s, or empty if the sink does not want it.
+  // In the order of the names, each as long as time_s.
   std::vector<std::vector<double>> columns;
   TimeOrigin origin{};               // origin of time_s, equal in all blocks
   std::vector<std::size_t> lines{};  // of each row in its text; empty without lines
@@ -72,12 +72,6 @@ class RowSink {
   // Called once before the first rows: the columns without the time, as in a capture's header (rate_x_radps,
   // …).
   virtual void begin(const std::vector<std::string>& names) = 0;
-  // Called after begin(): true if the sink needs the column. Other columns are also checked, and may be
-  // empty.
-  [[nodiscard]] virtual bool wants(std::size_t column) const {
-    (void)column;
-    return true;
-  }
   // Takes the next rows, at least one; may move or change them.
   virtual void take(RowBlock& rows) = 0;
 };

@@ -31,10 +31,6 @@ SampleTimes::SampleTimes(const ifog_description& description)
     : description_(description), timeline_(timeline_of(description)) {}
 
 void SampleTimes::go_on_as(const ifog_description& description) {
-  if (description.sequence_modulus == description_.sequence_modulus &&
-      description.has_device_time == description_.has_device_time &&
-      description.nominal_rate_hz == description_.nominal_rate_hz)
-    return;
   description_ = description;
   timeline_ = timeline_of(description);
   clock_ = Clock::undecided;

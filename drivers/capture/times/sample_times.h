@@ -47,8 +47,7 @@ class SampleTimes {
   // The next sample does not continue those before; clock and counter may have restarted. Arrival times,
   // which must be known, give the time between.
   void discontinuity() { broken_ = true; }
-  // Changes the driver's options from the next sample on. If its clocks change, it does not continue the
-  // samples before.
+  // Changes the driver's options from the next sample on, which does not continue the samples before.
   void go_on_as(const ifog_description& description);
   // From now on a clock that jumps back means that the device restarted, even without rollover. By default it
   // is an error, because a wrong driver looks similar.

@@ -209,8 +209,8 @@ class Checks:
         with h5py.File(native, "a") as inside:
             inside["a"].create_group("more")
         assert sorted(self.converted(native, "--group", "/a")) == ["rate_radps", "temperature_degC", "time_s"]
-        self.refused(native, "no dataset in the group '/'; its groups are read by '--group /a'")
-        self.refused(file, "no dataset in the group 'flight'; its groups are read by '--group flight/imu'", options=["--group", "flight"])
+        self.refused(native, "no dataset of numbers in the group '/'; its groups and tables are read by '--group /a'")
+        self.refused(file, "no dataset of numbers in the group 'flight'; its groups and tables are read by '--group flight/imu'", options=["--group", "flight"])
         self.refused(native, "no group '/b', expected one of the file's: '--group /a'", options=["--group", "/b"])
         self.refused(file, "no dataset 'GyroY', the group has", "'GyroX'", options=["--group", "/flight/imu", "--column", "rate_radps=GyroY:deg/s", "--time", "t:ms"])
         refused(2, "convert", self.csv, self.folder / "x.h5", "--group", "/a", says=["expected an HDF5 file"])
@@ -237,6 +237,7 @@ class Checks:
         file = self.folder / "pandas.h5"
         with h5py.File(file, "w") as inside:
             inside.create_dataset("imu/table", data=records, chunks=(100,), compression="gzip", shuffle=True)
+        self.refused(file, "no dataset of numbers in the group '/imu'; its groups and tables are read by '--group /imu/table'", options=["--group", "/imu"])
         found = self.converted(file, "--group", "/imu/table", "--time", "index:ns", "--column", "rate_z_radps=gyro_z:deg/s",
                                "--column", "temperature_degC=T")
         assert len(found["time_s"]) == 5000 and numpy.allclose(found["rate_z_radps"][:7], numpy.radians(numpy.arange(7)), rtol=1e-15)

@@ -17,36 +17,6 @@ namespace {
 constexpr double kRound = 2.0 * std::numbers::pi;
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
-// A device of 1 kHz that turns at 40 rad/s, and of which 200 samples are lost.
-TEST(CaptureBuilder, OverAGapInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
-  for (const std::uint32_t modulus : {0U, 128U, 65536U}) {
-    ifog_description d{};
-    d.axes = 1;
-    d.kind = IFOG_ANGLE;
-    d.angle_wrap_rad = kRound;
-    d.nominal_rate_hz = 1000.0;
-    d.sequence_modulus = modulus;
-    test::Built builder(d);
-    for (int n = 0; n < 1000; ++n) {
-      if (n >= 400 && n < 600) continue;
-      ifog_sample sample{};
-      sample.arrival_ns = kStart_ns + std::int64_t{n} * 1'000'000;
-      sample.valid_axes = 1;
-      sample.value[0] = std::remainder(0.04 * n, kRound);
-      if (modulus != 0) {
-        sample.flags = IFOG_SAMPLE_SEQUENCE;
-        sample.sequence = static_cast<std::uint32_t>(n) % modulus;
-      }
-      builder.add(sample);
-    }
-    const Capture made = builder.finish();
-    ASSERT_EQ(made.size(), 800U) << modulus;
-    EXPECT_NEAR(made.rate_radps[0][399], 40.0, 1e-6) << modulus;
-    EXPECT_TRUE(std::isnan(made.rate_radps[0][400])) << modulus;
-    EXPECT_NEAR(made.rate_radps[0][401], 40.0, 1e-6) << modulus;
-  }
-}
-
 // Ten seconds of 1 °/s are lost, some rollovers of the counter: no row turns faster or slower, and one that
 // may have gone half way round has no rate.
 TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {

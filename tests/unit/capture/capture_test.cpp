@@ -203,24 +203,18 @@ TEST(Measurable, OneImpossibleCellIsMissingAndTold) {
   EXPECT_EQ(read.faults.size(), 1U);
 }
 
-// What a sensor may well say stays, however odd.
+// What a sensor may well say stays, however odd; the limit is that of the unit in the file: 5000 °F are 2760 °C.
 TEST(Measurable, WhatMayBeMeasuredStays) {
-  for (const char* const cell : {"85", "-127", "-273.15", "1200"}) {
-    const Capture read = parse_capture(capture("rate_radps,temperature_degC", 2, 50, 1, cell), "a.csv");
-    EXPECT_EQ(read.channels[0].values[50], std::stod(cell));
-    EXPECT_TRUE(read.faults.empty());
-  }
-}
-
-// The limit is that of the unit in the file: 5000 °F are 2760 °C.
-TEST(Measurable, LimitsAreConvertedWithTheColumn) {
-  CsvLayout layout;
-  layout.columns = {CsvColumn::parse("rate_radps=w:rad/s"), CsvColumn::parse("temperature_degC=T:degF")};
-  layout.time = CsvTime::parse("time_s:s");
-  EXPECT_NEAR(parse_capture(capture("w,T", 2, 9, 1, "5000"), "a.csv", layout).channels[0].values[9], 2760.0,
-              1e-9);
-  EXPECT_TRUE(
-      std::isnan(parse_capture(capture("w,T", 2, 9, 1, "9000"), "a.csv", layout).channels[0].values[9]));
+  const auto read = [](const std::string& unit, const std::string& cell) {
+    CsvLayout layout;
+    layout.columns = {CsvColumn::parse("rate_radps=w:rad/s"), CsvColumn::parse("temperature_degC=T:" + unit)};
+    layout.time = CsvTime::parse("time_s:s");
+    return parse_capture(capture("w,T", 2, 50, 1, cell), "a.csv", layout).channels[0].values[50];
+  };
+  for (const char* const cell : {"85", "-127", "-273.15", "1200"})
+    EXPECT_EQ(read("degC", cell), std::stod(cell));
+  EXPECT_NEAR(read("degF", "5000"), 2760.0, 1e-9);
+  EXPECT_TRUE(std::isnan(read("degF", "9000")));
 }
 
 // Names that end in a letter that a unit has, too: no limit but the interface's.

@@ -168,35 +168,6 @@ TEST(CsvLayout, ARowBelowTheNamesSaysTheUnits) {
   EXPECT_EQ(refusal_of("time_s,rate_radps\n0,rad\n").substr(0, 30), "a.csv:2: rate_radps is 'rad', ");
 }
 
-// What is read without options, and what is asked for where the names leave a question.
-TEST(CsvLayout, AForeignHeaderIsReadWhereItIsClear) {
-  const auto said = [](const char* header) {
-    const std::string text = std::string(header) + "\n0,1,2,3\n0.01,1,3,3\n0.02,2,1,3\n0.03,1,2,3\n";
-    Capture read;
-    const std::string refused = test::refusal([&] { read = parse_capture(text, "a.csv"); }, "");
-    return !refused.empty() ? refused : read.notices.empty() ? "as named" : read.notices.front();
-  };
-  const std::string read = "a.csv: read as: ", asked = "a.csv:1: ";
-  EXPECT_EQ(said("Time [s],GyroX (deg/s),AccX (g),T"),
-            read + "time 'Time [s]' in s, rate_x 'GyroX (deg/s)' in deg/s, accx 'AccX (g)' in g");
-  EXPECT_EQ(said("Time_s,Rate_radps,Temperature_degC,mode"),
-            read + "time 'Time_s' in s, rate 'Rate_radps' in radps, temperature 'Temperature_degC' in degC");
-  EXPECT_EQ(said("time_s,frame_rate_hz,gyro_x_dps,gyro_x_dps_std"),
-            read + "time 'time_s' in s, rate_x 'gyro_x_dps' in dps");
-  EXPECT_EQ(said("time_s,raw_x_radps,denoised_x_radps,T"),
-            "a.csv:1: no rate column among 'raw_x_radps', 'denoised_x_radps', 'T', expected 'rate_radps' or "
-            "'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of these names");
-  EXPECT_EQ(said("a,b,c,d").substr(0, asked.size() + 35), asked + "no rate column among 'a', 'b', 'c',");
-  EXPECT_EQ(
-      said("t,wx,wy,c"),
-      asked +
-          "the unit of the rate is not named; to read it: --time t:s --column rate_x_radps=wx:rad/s --column "
-          "rate_y_radps=wy:rad/s; in the place of rad/s: deg/s, rad/sample, deg/sample");
-  EXPECT_EQ(said("time_s,gyro1_x_dps,gyro2_x_dps,T").substr(0, asked.size() + 44),
-            asked + "more than one column may be the rate; to rea");
-  EXPECT_EQ(said("x,gyro_x_dps,b,c").substr(0, asked.size() + 30), asked + "no time column; to read it: --");
-}
-
 TEST(CsvLayout, AHeaderOfAnotherUnitIsNotTakenForTheTargets) {
   const std::string text = "t_ms,rate_dps,temperature_degF,supply_V,angle_deg\n0,90,77,12,0\n5,90,77,12,1\n";
   const Capture c = parse_capture(

@@ -210,57 +210,6 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   }
 }
 
-// Looks at some columns only, and spoils what it was given.
-struct Choosy final : ifog::RowSink {
-  std::vector<std::size_t> wanted;
-  std::vector<double> time_s;
-  std::vector<std::vector<double>> values;  // by entry of wanted
-  bool others = false;                      // came
-
-  void begin(const std::vector<std::string>&) override { values.resize(wanted.size()); }
-  [[nodiscard]] bool wants(std::size_t column) const override {
-    return std::ranges::find(wanted, column) != wanted.end();
-  }
-  void take(RowBlock& rows) override {
-    time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      values[i].insert(values[i].end(), rows.columns[wanted[i]].begin(), rows.columns[wanted[i]].end());
-    for (std::size_t c = 0; c < rows.columns.size(); ++c) {
-      others = others || (!wants(c) && !rows.columns[c].empty());
-      rows.columns[c].assign(7 * c, -1.0);
-    }
-    rows.time_s.assign(3, -1.0);
-  }
-};
-
-TEST(CsvRows, WhatNobodyWantsIsCheckedAllTheSame) {
-  const std::string text = long_text(12000);
-  const Reading whole = in_pieces(text, kWhole);
-  for (const std::size_t piece : {std::size_t{1000}, std::size_t{200} << 10U, kWhole}) {
-    SCOPED_TRACE(piece);
-    Choosy sink;
-    sink.wanted = {1};
-    ifog::RowNotes notes;
-    ASSERT_EQ(read_by(sink, text, piece, notes), "");
-    EXPECT_EQ(sink.time_s, whole.got.rows.time_s);
-    ASSERT_EQ(sink.values[0].size(), whole.got.rows.columns[1].size());
-    EXPECT_EQ(0, std::memcmp(sink.values[0].data(), whole.got.rows.columns[1].data(),
-                             sink.values[0].size() * sizeof(double)));
-    // The temperature below absolute zero is told.
-    EXPECT_EQ(notes.faults, whole.notes.faults);
-    ASSERT_EQ(notes.faults.size(), 1U);
-    std::string wrong = text;
-    wrong.replace(text.rfind(",25.5"), 5, ",warm");
-    EXPECT_EQ(read_by(sink, wrong, piece, notes), in_pieces(wrong, kWhole).refused);
-  }
-  // A temperature is not brought to where nobody looks at it.
-  Choosy sink;
-  sink.wanted = {0, 1};
-  ifog::RowNotes notes;
-  ASSERT_EQ(read_by(sink, text, kWhole, notes), "");
-  EXPECT_FALSE(sink.others);
-}
-
 TEST(CsvRows, SeparatorsThatAreBlanksCountAsSeparators) {
   CsvLayout layout;
   layout.separator = '\t';

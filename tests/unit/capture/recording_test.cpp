@@ -163,50 +163,6 @@ TEST_F(Recording, AMissingRateStaysMissing) {
   EXPECT_TRUE(std::isnan(back.rate_radps[0][10]));
 }
 
-// KVH's data sheet: ±490 °/s. The daemon takes what reaches it for missing, so whoever else reads it must,
-// too.
-TEST_F(Recording, ARateAtFullScaleIsMissing) {
-  constexpr double kFullScale = 490.0 * std::numbers::pi / 180.0;
-  Capture fast = wave({"x", "y", "z"});
-  for (std::size_t i = 100; i < 110; ++i) fast.rate_radps[0][i] = i % 2 == 0 ? 12.0 : -12.0;
-  fast.rate_radps[1][104] = kFullScale * 1.0001;
-  fast.rate_radps[2][105] = kFullScale * 0.9999;
-  const auto plugin = ifog::find_plugin("kvh1750", ifog::plugin_folders());
-  const DriverSettings settings{{"rate_hz", "200"}};
-  ifog::DriverInstance out(plugin, settings), in(plugin, settings);
-  ifog::CaptureEncoder encoder(fast, out, 200.0);
-  std::vector<std::uint8_t> bytes;
-  while (encoder.next(bytes)) {
-  }
-  EXPECT_EQ(encoder.rows_at_full_scale(), 10U);
-  ifog::test::Built builder(in.description());
-  in.decode_bytes(bytes, 0, [&](const ifog_sample& sample) { builder.add(sample); });
-  EXPECT_EQ(builder.remarks(),
-            std::vector<std::string>{"10 samples at or beyond the sensor's full scale, treated as missing"});
-  const Capture back = builder.finish();
-  ASSERT_EQ(back.size(), fast.size());
-  for (std::size_t i = 0; i < back.size(); ++i) {
-    EXPECT_EQ(std::isnan(back.rate_radps[0][i]), i >= 100 && i < 110) << i;
-    EXPECT_EQ(std::isnan(back.rate_radps[1][i]), i == 104) << i;
-    EXPECT_FALSE(std::isnan(back.rate_radps[2][i])) << i;
-  }
-}
-
-// What a format without a clock loses: format A has a counter of 7 bits, B a clock.
-TEST_F(Recording, TimeThatTheFormatCannotCarryIsKnown) {
-  constexpr int kMissingRows = 300;  // two rounds of the counter, and 44 that show
-  const Capture holed = wave({"x", "y", "z"}, kMissingRows);
-  for (const auto& [format, lost_s] : {std::pair{"a", 256.0 / 200.0}, {"b", 0.0}}) {
-    ifog::DriverInstance out(ifog::find_plugin("kvh1750", ifog::plugin_folders()),
-                             {{"rate_hz", "200"}, {"format", format}});
-    ifog::CaptureEncoder encoder(holed, out, 200.0);
-    std::vector<std::uint8_t> bytes;
-    while (encoder.next(bytes)) {
-    }
-    EXPECT_NEAR(encoder.time_lost_s(), lost_s, 1e-9) << format;
-  }
-}
-
 TEST_F(Recording, OneIdOnTwoInterfacesIsTwoDevices) {
   const DriverSettings settings{{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}};
   there_and_back(wave({""}), "dbc", settings);
@@ -285,33 +241,6 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
   const Capture three = wave({"x", "y", "z"});
   EXPECT_EQ(ifog::test::refusal([&] { ifog::CaptureEncoder(three, driver, 200.0, "q"); }),
             "--axis is 'q', expected none for a capture of several axes");
-}
-
-// A device whose clock shows the time since 1970, as one that is set by PTP: an angle's steps are divided by
-// what its nanoseconds say, and no time loses one of them.
-TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
-  ifog_description d{};
-  d.axes = 1;
-  d.kind = IFOG_ANGLE;
-  d.has_device_time = 1;
-  d.nominal_rate_hz = 1000.0;
-  ifog::test::Built from_0(d), from_1970(d);
-  ifog_sample sample{};
-  sample.valid_axes = 1;
-  sample.flags = IFOG_SAMPLE_DEVICE_TIME;
-  for (int i = 0; i < 200; ++i) {
-    sample.value[0] = 1e-3 * i * i;
-    sample.device_time_ns = 1'000'001LL * i;
-    from_0.add(sample);
-    sample.device_time_ns += 1'700'000'000'000'000'000;
-    from_1970.add(sample);
-  }
-  const Capture one = from_0.finish(), other = from_1970.finish();
-  EXPECT_EQ(one.origin, ifog::TimeOrigin{});
-  EXPECT_EQ(other.origin, (ifog::TimeOrigin{1'700'000'000, 0}));
-  EXPECT_EQ(one.time_s, other.time_s);
-  ASSERT_EQ(one.size(), 200U);
-  for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.rate_radps[0][i], other.rate_radps[0][i]) << i;
 }
 
 // As of a capture's own cells: no temperature is below absolute zero.

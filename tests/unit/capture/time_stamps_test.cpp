@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same series with its times begun at any moment and in any unit is the same series. Times are made of
-// whole numbers here, so that what they should be is known to the last digit.
+// Times in digits and dates. That a series of any start and unit is the same series is checked by
+// system/command_line/origins.py.
 #include "drivers/capture/times/time_stamps.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <sstream>
 #include <string>
 
-#include "drivers/capture/csv/csv_rows.h"
 #include "tests/unit/capture/read_capture.h"
 
 namespace {
@@ -110,67 +108,6 @@ TEST(SaidTime, IsBeforeAndBehindWhatItSays) {
   for (const std::string text : {"", "x", "1s", "inf", "nan"}) EXPECT_FALSE(SaidTime::parse(text)) << text;
 }
 
-// What a file of times since `start` (in ticks of a ns) says, in a unit of `of_second` a second.
-std::string stamp(std::int64_t ns, std::int64_t of_second) {
-  const std::int64_t tick = 1'000'000'000 / of_second;  // ns in a unit
-  const std::string sign = ns < 0 ? "-" : "";
-  const std::int64_t all = std::abs(ns);
-  std::string text = sign + std::to_string(all / tick);
-  if (tick == 1) return text;
-  std::string behind = std::to_string(all % tick);
-  behind.insert(0, std::to_string(tick).size() - 1 - behind.size(), '0');
-  return text + "." + behind;
-}
-
-// An angle, whose cells are the same whatever the times.
-ifog::Table turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit,
-                   std::size_t piece) {
-  constexpr int kRows = 400;
-  std::string text = "t,angle\n";
-  for (int i = 0; i < kRows; ++i)
-    text += stamp(start_ns + i * 10'000'000LL, of_second) + "," + std::to_string(i) + "e-3\n";
-  ifog::CsvLayout layout;
-  layout.time = ifog::CsvTime::parse("t:" + unit);
-  layout.columns = {ifog::CsvColumn::parse("rate_radps=angle:rad")};
-  std::size_t at = 0;
-  const auto read = [&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, text.size() - at);
-    std::memcpy(to, text.data() + at, n);
-    at += n;
-    return n;
-  };
-  return ifog::table_of(
-      [&](ifog::RowSink& sink) { return ifog::read_csv_rows(read, "a.csv", layout, sink, piece); });
-}
-
-TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
-  const ifog::Table from_0 = turned(0, 1, "s", 1U << 20U);
-  ASSERT_EQ(from_0.time_s.size(), 400U);
-  EXPECT_EQ(from_0.time_s[3], 0.03);
-  struct Unit {
-    const char* name;
-    std::int64_t of_second;
-  };
-  for (const std::int64_t start_ns : {1'700'000'000'000'000'000LL, 1'700'000'000'123'456'789LL,
-                                      345'678'250'000'000LL, -1'700'000'000'500'000'000LL, 5'000'000LL})
-    for (const Unit unit : {Unit{"s", 1}, {"ms", 1000}, {"us", 1'000'000}, {"ns", 1'000'000'000}})
-      // The second reads it in forty pieces, each by itself.
-      for (const std::size_t piece : {1U << 20U, 256U}) {
-        const ifog::Table got = turned(start_ns, unit.of_second, unit.name, piece);
-        ASSERT_EQ(got.time_s.size(), from_0.time_s.size());
-        for (std::size_t i = 1; i < got.time_s.size(); ++i) {
-          ASSERT_NEAR(got.columns[0].values[i], from_0.columns[0].values[i], 1e-12)
-              << start_ns << " " << unit.name << " row " << i;
-          const std::int64_t ns = start_ns + static_cast<std::int64_t>(i) * 10'000'000;
-          ASSERT_EQ(got.time_s[i],
-                    static_cast<double>(ns - got.origin.s * 1'000'000'000 - got.origin.ns) / 1e9)
-              << unit.name << " row " << i;
-          if (start_ns == 5'000'000) continue;
-          ASSERT_EQ(got.time_s[i], from_0.time_s[i]) << unit.name << " row " << i;
-        }
-      }
-}
-
 std::string seconds(const std::string& text) {
   std::array<char, ifog::kLongestDate> to{};
   return std::string(ifog::date_in_digits(text, to));
@@ -204,27 +141,6 @@ TEST(DateTime, IsNothingElse) {
       "01;26-05-01;12:30;25:00:00;2026-;1969-12-31T23:59:59.5Z;"
       "2026-05-01T12:00:00+24:00;2026-05-01T12:00:00.00000000000000000000000000000000000000000000000001Z");
   for (std::string text; std::getline(texts, text, ';');) EXPECT_EQ(seconds(text), "") << text;
-}
-
-TEST(DateTime, ACaptureMayHaveThemForItsTime) {
-  const std::string rows =
-      "2026-05-01T23:59:59.990000Z,0.5\n2026-05-02T00:00:00.000000Z,0.25\n2026-05-02T00:00:00.010000Z,0\n";
-  const ifog::Capture numbers = ifog::parse_capture(
-      "time_s,rate_radps\n1777679999.990000,0.5\n1777680000.000000,0.25\n1777680000.010000,0\n", "a.csv");
-  const ifog::Capture dates = ifog::parse_capture("time_s,rate_radps\n" + rows, "a.csv");
-  EXPECT_EQ(dates.time_s, numbers.time_s);
-  EXPECT_EQ(dates.rate_radps, numbers.rate_radps);
-  EXPECT_TRUE(dates.notices.empty());
-
-  ifog::CsvLayout by;
-  by.time = ifog::CsvTime::parse("Zeit");
-  by.separator = ';';
-  const ifog::Capture german = ifog::parse_capture(
-      "Zeit;rate_radps\n2026-05-02 01:59:59,99+02:00;0,5\n2026-05-02 02:00:00,00+02:00;0,25\n"
-      "2026-05-02 02:00:00,01+02:00;0\n",
-      "a.csv", by);
-  EXPECT_EQ(german.time_s, numbers.time_s);
-  EXPECT_EQ(german.rate_radps, numbers.rate_radps);
 }
 
 TEST(DateTime, WhatIsWrongIsSaidByLine) {

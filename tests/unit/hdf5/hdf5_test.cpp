@@ -40,33 +40,6 @@ Table read(const std::string& path) {
 
 class Hdf5Folder : public testing::Test, protected test::OwnFolder {};
 
-// More than a block, so that there are several.
-TEST_F(Hdf5Folder, GivesBackWhatWasWrittenToTheBit) {
-  constexpr std::size_t kRows = 150'001;
-  std::vector<double> time, rate, odd;
-  for (std::size_t i = 0; i < kRows; ++i) {
-    time.push_back(static_cast<double>(i) / 3.0);
-    rate.push_back(std::sin(static_cast<double>(i) * 0.7) * 1e-5);
-    odd.push_back(i % 3 == 0 ? -0.0 : i % 3 == 1 ? 5e-324 : std::numeric_limits<double>::quiet_NaN());
-  }
-  const std::string file = path("c.h5");
-  // In pieces that are no whole chunks.
-  Hdf5Writer writer(file, "one\n\nthree\n", {"time_s", "rate_y_radps", "odd_counts"});
-  for (std::size_t from = 0, count = 1; from < kRows;
-       from += count, count = std::min<std::size_t>(70'000, kRows - from))
-    writer.rows(std::vector<std::span<const double>>{std::span(time).subspan(from, count),
-                                                     std::span(rate).subspan(from, count),
-                                                     std::span(odd).subspan(from, count)});
-  writer.finish();
-  const Table table = read(file);
-  EXPECT_EQ(table.comments, "one\n\nthree\n");
-  EXPECT_EQ(table.time_s, time);
-  ASSERT_EQ(table.columns.size(), 2U);
-  EXPECT_EQ(table.columns[0].name, "rate_y_radps");
-  EXPECT_EQ(table.columns[0].values, rate);
-  EXPECT_EQ(std::memcmp(table.columns[1].values.data(), odd.data(), kRows * sizeof(double)), 0);
-}
-
 TEST_F(Hdf5Folder, ManyLongCommentsAreKept) {
   std::string comments;
   for (int i = 0; i < 6000; ++i) comments += std::to_string(i) + std::string(100, 'x') + "\n";

@@ -120,17 +120,13 @@ NamedLog::NamedLog(InputFile& file) : name_(file.path()) {
   if (file.reopens() && !recorded) return;
   unpacked_.emplace();
   name_ = "/proc/self/fd/" + std::to_string(unpacked_->descriptor());
-  recorded ? unpack_messages(file) : unpack(file);
-}
-
-void NamedLog::unpack(InputFile& file) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20U;
-  std::vector<char> block(kBlock);
-  std::size_t at = 0;
-  while (const std::size_t n = file.read(block.data(), block.size())) {
-    unpacked_->write(at, block.data(), n);
-    at += n;
+  if (recorded) {
+    unpack_messages(file);
+    return;
   }
+  std::vector<char> block(std::size_t{1} << 20U);
+  for (std::size_t n = 0, at = 0; (n = file.read(block.data(), block.size())) > 0; at += n)
+    unpacked_->write(at, block.data(), n);
 }
 
 void NamedLog::unpack_messages(InputFile& file) const {

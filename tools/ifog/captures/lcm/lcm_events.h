@@ -75,7 +75,6 @@ class NamedLog {
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
-  void unpack(InputFile& file);
   void unpack_messages(InputFile& file) const;
 
   std::string name_;

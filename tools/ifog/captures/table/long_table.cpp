@@ -74,13 +74,6 @@ void LongTableSink::begin(const std::vector<std::string>& names) {
   }
 }
 
-bool LongTableSink::wants(std::size_t column) const {
-  const auto has = [column](const std::vector<std::size_t>& columns) {
-    return std::find(columns.begin(), columns.end(), column) != columns.end();
-  };
-  return has(from_) || has(outlined_);
-}
-
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
   // Creating a file's pages takes longer than reading its rows: two threads share it.

@@ -58,7 +58,6 @@ class LongTableSink final : public RowSink {
   explicit LongTableSink(LongTable& table, Wanted wanted = {}) : table_(table), wanted_(std::move(wanted)) {}
 
   void begin(const std::vector<std::string>& names) override;
-  [[nodiscard]] bool wants(std::size_t column) const override;
   void take(RowBlock& rows) override;
 
  private:

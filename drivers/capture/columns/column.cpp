@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/columns/column.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/units/units.h"
 
 namespace ifog {
 namespace {
@@ -16,7 +19,7 @@ namespace {
 // Words of each role, separated by blanks. speed: a rate if with a turning word. glued: may be joined with an
 // axis (xgyro, wx). step: before an angle, the turn within a sample. no_time: belongs to a time, but not that
 // of the rows. one: numbers or names one of several sensors.
-constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
+constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
     {Role::rate,
      " gyro gyr gyros gyroscope gyroskop drehrate omega angvel angrate angularvelocity angularrate "
      "rotationrate "
@@ -45,10 +48,6 @@ constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::no_time,
      " dt relative period delta integral id status valid offset zone delay age exposure week accuracy "
      "interval flags tflags hour minute year month nano "},
-    {Role::ms, " millis ms milliseconds "},
-    {Role::us, " micros us microseconds "},
-    {Role::ns, " nanos ns nanoseconds "},
-    {Role::s, " sec secs seconds "},
     {Role::one, " id sensor device instance topic i imu "},
 }};
 
@@ -62,7 +61,7 @@ std::string without_index(const std::string& header, std::string& axis) {
   if (open == std::string::npos || header.size() != open + 3 || header.back() != ']' ||
       !is_digit(header[open + 1]))
     return header;
-  if (header[open + 1] <= '2') axis = std::string(1, static_cast<char>('x' + (header[open + 1] - '0')));
+  if (header[open + 1] <= '2') axis = axis_name(static_cast<std::size_t>(header[open + 1] - '0'));
   return header.substr(0, open);
 }
 
@@ -129,6 +128,27 @@ std::string axis_of_turn(std::string& word) {
   return "";
 }
 
+// Unit in ASCII: deg/s for a degree sign of another encoding than UTF-8.
+std::string typed(const std::string& unit) {
+  if (printable(unit, unit.size()) == unit) return unit;
+  for (const char* const known : {"deg/s", "rad/s", "deg", "deg/h", "degC", "s", "us"}) {
+    const auto by = convert_unit(unit, known);
+    const auto angle = angle_unit(unit, false, false);
+    if ((by && by->scale == 1.0 && by->offset == 0.0) || (angle && angle == angle_unit(known, false, false)))
+      return known;
+  }
+  return unit;
+}
+
+std::string unit_by_name(const std::string& name, const std::string& text) {
+  const std::string unit = unit_in_name(name);
+  // A magnetometer's G is gauss, not gravity.
+  if (text.starts_with("mag") && (unit == "G" || unit == "mG")) return unit == "G" ? "gauss" : "mgauss";
+  if (!unit.empty()) return typed(unit);
+  const std::string last = text.substr(text.rfind('_') + 1);  // gyro_rad[0]
+  return angle_unit(last, false, false) ? last : "";
+}
+
 }  // namespace
 
 std::string lower(std::string text) {
@@ -167,7 +187,7 @@ Words::Words(const std::string& header) {
   // gyro_0, gyro_1, gyro_2: a final number counts axes from 0.
   if (axis.empty() && words.size() > 1 && words.back().size() == 1 && words.back()[0] >= '0' &&
       words.back()[0] <= '2') {
-    axis = std::string(1, static_cast<char>('x' + (words.back()[0] - '0')));
+    axis = axis_name(static_cast<std::size_t>(words.back()[0] - '0'));
     words.pop_back();
     stem = stem.substr(0, stem.rfind(' '));
   }
@@ -177,6 +197,85 @@ bool Words::has(std::string_view word) const { return std::ranges::find(words, w
 
 bool Words::have(Role role) const {
   return std::ranges::any_of(words, [role](const std::string& word) { return says(word, role); });
+}
+
+TableColumn::TableColumn(std::string column, const std::string& said, std::vector<std::string> first_cells)
+    : name(std::move(column)), stated(typed(said)), unit(stated), words(name) {
+  if (unit.empty()) unit = unit_by_name(name, words.text);
+  set_cells(std::move(first_cells));
+}
+
+void TableColumn::set_cells(std::vector<std::string> first_cells) {
+  cells = std::move(first_cells);
+  filled.clear();
+  values.clear();
+  for (const std::string& cell : cells) {
+    if (cell.empty()) continue;
+    filled.push_back(cell);
+    if (const auto value = finite_number(cell)) values.push_back(*value);
+  }
+}
+
+bool TableColumn::is_dates() const {
+  return !filled.empty() && std::ranges::all_of(filled, [](const auto& cell) { return is_date(cell); });
+}
+
+bool TableColumn::varies() const {
+  return !values.empty() &&
+         (values.size() < 2 || std::ranges::any_of(values, [&](double v) { return v != values[0]; }));
+}
+
+bool TableColumn::is_whole() const {
+  return std::ranges::all_of(values, [](double v) { return v == std::floor(v); });
+}
+
+bool TableColumn::counts_rows() const {
+  std::size_t other = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) other += values[i] - values[i - 1] != 1.0 ? 1 : 0;
+  return values.size() >= kFewRows && other <= 1 && is_whole();
+}
+
+bool TableColumn::is_smooth() const {
+  constexpr double kSmooth = 0.5;
+  if (values.size() < kFewRows) return false;
+  double mean = 0.0, around = 0.0, differences = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    around += std::pow(values[i] - mean, 2.0);
+    if (i > 0) differences += std::pow(values[i] - values[i - 1], 2.0);
+  }
+  return differences < kSmooth * around;
+}
+
+void TableSample::set(const std::vector<std::string>& names, const std::vector<std::string>& units,
+                      const std::vector<std::vector<std::string>>& cells) {
+  columns.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    TableColumn& column = columns.emplace_back(names[i], units.empty() ? "" : units[i], cells[i]);
+    const bool alone = !names[i].empty() && std::ranges::count(names, names[i]) == 1;
+    column.header =
+        alone && printable(names[i], names[i].size()) == names[i] ? names[i] : "#" + std::to_string(i + 1);
+  }
+}
+
+void TableSample::keep_rows(std::size_t place, const std::string& cell) {
+  const std::vector<std::string> which = columns[place].cells;
+  for (TableColumn& column : columns) {
+    std::size_t row = 0;
+    std::erase_if(column.cells, [&](const std::string&) { return which[row++] != cell; });
+    column.set_cells(std::move(column.cells));
+  }
+}
+
+std::vector<std::string> TableSample::names() const {
+  std::vector<std::string> out;
+  for (const TableColumn& column : columns) out.push_back(column.name);
+  return out;
+}
+
+std::string TableSample::counting() const {
+  const auto found = std::ranges::find_if(columns, &TableColumn::counts_rows);
+  return found == columns.end() ? "" : found->name;
 }
 
 }  // namespace ifog
