@@ -44,11 +44,19 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
 // angular velocity; r, U (Umdrehung) and tr (tour) are revolutions.
 constexpr std::array<std::string_view, 5> kPerMinute{"1", "", "r", "u", "tr"};
 
-constexpr std::array kRates{
-    Unit{"dps", kDegree},         Unit{"mdps", kDegree * 1e-3},    Unit{"dph", kDegree / 3600.0},
-    Unit{"udps", kDegree * 1e-6}, Unit{"degps", kDegree},          Unit{"radps", 1.0},
-    Unit{"mradps", 1e-3},         Unit{"rpm", kTurn / 60.0},       Unit{"krpm", kTurn / 60.0e-3},
-    Unit{"upm", kTurn / 60.0},    Unit{"minutinver", kTurn / 60.0}};
+constexpr std::array kRates{Unit{"dps", kDegree},
+                            Unit{"mdps", kDegree * 1e-3},
+                            Unit{"dph", kDegree / 3600.0},
+                            Unit{"udps", kDegree * 1e-6},
+                            Unit{"degps", kDegree},
+                            Unit{"radps", 1.0},
+                            Unit{"degph", kDegree / 3600.0},
+                            Unit{"degh", kDegree / 3600.0},
+                            Unit{"mradps", 1e-3},
+                            Unit{"rpm", kTurn / 60.0},
+                            Unit{"krpm", kTurn / 60.0e-3},
+                            Unit{"upm", kTurn / 60.0},
+                            Unit{"minutinver", kTurn / 60.0}};
 
 constexpr std::array kTimes{Unit{"s", 1.0},      Unit{"sec", 1.0},     Unit{"second", 1.0},
                             Unit{"sek", 1.0},    Unit{"secon", 1.0},   Unit{"sekunde", 1.0},

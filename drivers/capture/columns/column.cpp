@@ -44,7 +44,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
     {Role::time,
      " time timestamp stamp t utc datetime date zeit zeitstempel seconds elapsed tow sow sampletimefine "
      "timeusec secs "
-     "millis micros nanos milliseconds microseconds nanoseconds gpst "},
+     "millis micros nanos milliseconds microseconds nanoseconds gpst gpstow epoch tiempo temps "},
     {Role::no_time,
      " dt relative period delta integral id status valid offset zone delay age exposure week accuracy "
      "interval flags tflags hour minute year month nano "},

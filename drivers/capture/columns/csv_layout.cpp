@@ -72,7 +72,10 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   if (wanted.empty() || out.header.empty()) refuse(text, form);
   if (wanted == kRateUnit && !out.is_rate() && Words(out.name).have(Role::truth))
     refuse(text, "the name reference_rate_radps, or reference_rate_x_radps of an axis, for a true rate");
-  if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted)) return out;
+  std::string as_in_names = out.unit;  // m/s
+  std::ranges::replace(as_in_names, '/', 'p');
+  if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted) || as_in_names == wanted)
+    return out;
   const std::string known = other_units(wanted);
   refuse(
       text,

@@ -226,9 +226,9 @@ std::vector<Rates> sensors_by_place(const TableSample& table, const std::optiona
 
 // A rate in motion is as smooth as an angle, so only a lone column without a name is offered as an angle first.
 std::vector<std::string> units_by_values(const TableSample& table, const Rates& rates) {
-  std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
+  std::vector<std::string> units{"rad/s", "deg/s", "deg/h", "rad/sample", "deg/sample"};
   if (rates.front().increment)
-    std::rotate(units.begin(), units.begin() + 2, units.end());
+    std::rotate(units.begin(), units.begin() + 3, units.end());
   else if (std::ranges::any_of(rates,
                                [&](const auto& rate) { return table.columns[rate.place].is_smooth(); }))
     units.insert(!table.named && rates.size() == 1 ? units.begin() : units.end(), {"rad", "deg"});

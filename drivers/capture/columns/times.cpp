@@ -113,10 +113,13 @@ int rank_of(const TableColumn& column) {
   const Words& words = column.words;
   if (column.name == "time_s") return 5;
   // UTC_Day, UTC_Second: parts of a date.
-  if (words.have(Role::no_time) || (words.first() == "utc" && (words.has("day") || words.has("second"))))
+  const bool of_week = words.has("of") && words.has("week");  // Time of week, SecondsOfWeek
+  if ((words.have(Role::no_time) && !of_week) ||
+      (words.first() == "utc" && (words.has("day") || words.has("second"))))
     return 0;
   const auto is_time = [](const std::string& word) {
-    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
+    return word.starts_with("time") || word.ends_with("time") || word.ends_with("stamp") ||
+           says(word, Role::time);
   };
   if (words.has("header") && words.has("stamp")) return 4;  // measurement time in ROS
   if (words.size() > 0 && std::ranges::all_of(words.words, is_time)) return 3;

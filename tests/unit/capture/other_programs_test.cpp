@@ -53,20 +53,21 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"a.csv:1: no rate column among 'raw_x_radps', 'denoised_x_radps', 'T', expected 'rate_radps' or "}},
       {rows_of("t,wx,wy,c\n", "0.{i},{x},{y},3"),
        {"the unit of the rate is not named; to read it: --time t:s --column rate_x_radps=wx:rad/s --column "
-        "rate_y_radps=wy:rad/s; in the place of rad/s: deg/s, rad/sample, deg/sample"}},
+        "rate_y_radps=wy:rad/s; in the place of rad/s: deg/s, deg/h, rad/sample, deg/sample"}},
       {rows_of("time_s,gyro1_x_dps,gyro2_x_dps,T\n", "0.{i},{x},{y},3"),
        {"more than one column may be the rate"}},
       {rows_of("x,gyro_x_dps,b,c\n", "7,{x},2,3"), {"a.csv:1: no time column; to read it: --"}},
       // KAIST Complex Urban data set, fog.csv: a FOG's increments in rad.
       {rows_of("", "15445907980{i}0000000,{x},{y},{z}"),
        {"--time '#1:ns' --column 'rate_x_radps=#2:rad/s'",
-        "; in the place of rad/s: deg/s, rad/sample, deg/sample"}},
+        "; in the place of rad/s: deg/s, deg/h, rad/sample, deg/sample"}},
       // NCLT data set, kvh.csv: the heading of a FOG.
       {rows_of("", "13578472480{i}0000,{angle}"),
        {"--column 'rate_radps=#2:rad'", "in the place of rad: deg, rad/s"}},
       // Sensor Logger, Gyroscope.csv: a rate in motion is as smooth as an angle.
       {rows_of("time,seconds_elapsed,z,y,x\n", "1691674007{i}000000,1.{i},{angle},{y},{x}"),
-       {"--column rate_z_radps=z:rad/s", "in the place of rad/s: deg/s, rad/sample, deg/sample, rad, deg"}},
+       {"--column rate_z_radps=z:rad/s",
+        "in the place of rad/s: deg/s, deg/h, rad/sample, deg/sample, rad, deg"}},
       // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
       {rows_of("", "$VNIMU,-0.0350,+0.4222,-0.6643,-0.015,+0.019,+9.80{digit},{x},{y},{z},+20.7,+84.322*00"),
        {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
@@ -228,7 +229,7 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // Only units in which a sensor may measure the values are offered.
       {rows_of("timestamp,imu.gyro.x\n", "25655{i}491968,{x}"),
        {"--time timestamp:us", "in the place of us: ns;"}},
-      {rows_of("t_s,gyro_x\n", "0.{i},32{i}"), {"gyro_x:deg/s; in the place of deg/s: rad/sample"}},
+      {rows_of("t_s,gyro_x\n", "0.{i},32{i}"), {"gyro_x:deg/s; in the place of deg/s: deg/h, rad/sample"}},
       // NovAtel SPAN without inertial logs.
       {rows_of("",
                "#INSATTA,USB3,0,68.5;1992,2363{i}.0,0.{i},0.1,0.2*8498a2b3\n#BESTVELA,USB3,0,68.5;SOL_"
