@@ -18,7 +18,8 @@ class LcmField {
   // Field by name: "NAME": the ifog.channel_t of that name, or a number of an ifog.status_t: input_rate_hz, …
   // "FIELD[i]": of an ifog.rate_t raw, compensated, denoised; of an ifog.status_t nis_mean, whiteness,
   //   measurement_noise; i = 0 … 2.
-  // "channel_value[NAME]": another sensor's channel, from its ifog.status_t. The configuration refuses others.
+  // "channel_value[NAME]": another sensor's channel, from its ifog.status_t. The configuration refuses what
+  // is none of these.
   explicit LcmField(const std::string& text) : field_(LcmFieldName::parse(text).value()) {}
 
   // False: invalid message, another type, or without the field. The type is recognised by LCM's fingerprint.

@@ -31,10 +31,6 @@ ReceiveControl receive_control(const msghdr& message) noexcept {
       scm_timestamping stamps{};
       std::memcpy(&stamps, CMSG_DATA(c), sizeof stamps);
       said.arrival_ns = ns(stamps.ts[0]);  // [0] is software; [2], hardware, has its own clock
-    } else if (c->cmsg_type == SCM_TIMESTAMPNS && c->cmsg_len >= CMSG_LEN(sizeof(timespec))) {
-      timespec stamp{};
-      std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
-      said.arrival_ns = ns(stamp);
     } else if (c->cmsg_type == SO_RXQ_OVFL && c->cmsg_len >= CMSG_LEN(sizeof said.drops)) {
       std::memcpy(&said.drops, CMSG_DATA(c), sizeof said.drops);
       said.has_drops = true;
@@ -58,7 +54,6 @@ void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::stri
 
 void ask_for_times(int fd, const std::string& name, std::string& warning) {
   if (set(fd, SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE)) return;
-  if (set(fd, SO_TIMESTAMPNS, 1)) return;
   warn(warning, name,
        "no time stamps from the kernel (" + std::generic_category().message(errno) +
            "): arrival times are those of the reading");

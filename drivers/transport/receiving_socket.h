@@ -14,10 +14,9 @@
 
 namespace ifog {
 
-// Space in a msghdr for a time stamp of either kind and the drop counter.
+// Space in a msghdr for the time stamp and the drop counter.
 struct ControlRoom {
-  alignas(cmsghdr) unsigned char bytes[CMSG_SPACE(sizeof(scm_timestamping)) + CMSG_SPACE(sizeof(timespec)) +
-                                       CMSG_SPACE(sizeof(std::uint32_t))];
+  alignas(cmsghdr) unsigned char bytes[CMSG_SPACE(sizeof(scm_timestamping)) + CMSG_SPACE(sizeof(unsigned))];
 };
 
 struct ReceiveControl {
@@ -32,8 +31,8 @@ ReceiveControl receive_control(const msghdr& message) noexcept;
 // Sets the receive buffer, as the kernel counts it. Exceeding net.core.rmem_max needs CAP_NET_ADMIN; if less
 // than `wanted` is granted this is added to `warning`, with the device's `name`.
 void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::string& warning);
-// Requests the kernel's arrival time for each packet (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS);
-// failure is added to `warning`.
+// Requests the kernel's arrival time for each packet (SO_TIMESTAMPING, software); failure is added to
+// `warning`.
 void ask_for_times(int fd, const std::string& name, std::string& warning);
 // Requests the number of dropped packets with each packet (SO_RXQ_OVFL).
 void ask_for_drops(int fd) noexcept;

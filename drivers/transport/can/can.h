@@ -19,9 +19,9 @@ struct CanSettings {
   std::uint32_t receive_buffer_bytes = 4U << 20U;
 };
 
-// Arrival times are the kernel's (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS; else the read time with a
-// warning). Kernel drops are counted by SO_RXQ_OVFL, and by SO_MEMINFO after the last frame. Frames in the
-// socket are still read after the interface goes down. open() rejects opening bytes, which a bus cannot use.
+// Arrival times are the kernel's (SO_TIMESTAMPING, software; else the read time with a warning). Kernel drops
+// are counted by SO_RXQ_OVFL, and by SO_MEMINFO after the last frame. Frames in the socket are still read
+// after the interface goes down. open() rejects opening bytes, which a bus cannot use.
 std::unique_ptr<Transport> make_can_transport(const CanSettings& settings);
 
 }  // namespace ifog

@@ -114,6 +114,13 @@ TEST(FlightFormat, WhatIsWrittenIsWhatTheDescriptionSays) {
   written.clear();
   append_block(written, BlockType::header, {}, payload, deflater);
   EXPECT_EQ(written, block_by_hand(1, 0, 0, payload));
+  // Each is deflated by itself.
+  const Bytes even(5000, 0x2A);
+  Bytes first, second;
+  for (Bytes* const block : {&first, &second}) append_block(*block, BlockType::data, {99, 0}, even, deflater);
+  EXPECT_EQ(first[5], 1);
+  EXPECT_LT(first.size(), 100U);
+  EXPECT_EQ(second, first);
 }
 
 TEST(FlightFormat, AHeaderComesBackAsItWas) {

@@ -19,7 +19,6 @@
 
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/receiving_socket.h"
 #include "tests/unit/refusal.h"
 #include "tests/unit/transport/forever.h"
 
@@ -82,32 +81,6 @@ TEST(CanFrame, GoesIntoTheSocketsForm) {
     EXPECT_EQ(raw.len, sent) << length;
     EXPECT_EQ(raw.flags, 1);
   }
-}
-
-// The kernel's own control messages, of a datagram socket that every kernel has.
-TEST(ReceiveControl, ReadsTheKernelsTime) {
-  int fds[2];
-  ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM, 0, fds), 0);
-  const int on = 1;
-  ASSERT_EQ(setsockopt(fds[1], SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on), 0);
-  const std::int64_t before = ifog::realtime_ns();
-  ASSERT_EQ(write(fds[0], "x", 1), 1);
-  char byte = 0;
-  iovec vector{&byte, 1};
-  alignas(cmsghdr) unsigned char control[256]{};
-  msghdr message{};
-  message.msg_iov = &vector;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  ASSERT_EQ(recvmsg(fds[1], &message, 0), 1);
-  const std::int64_t after = ifog::realtime_ns();
-  close(fds[0]);
-  close(fds[1]);
-  const std::int64_t arrival = ifog::receive_control(message).arrival_ns;
-  if (arrival == 0) GTEST_SKIP() << "this kernel stamps no datagrams of AF_UNIX; any Linux of its own does";
-  EXPECT_GE(arrival, before);
-  EXPECT_LE(arrival, after);
 }
 
 std::string refusal(const ifog::CanSettings& settings, std::span<const std::uint8_t> opening = {}) {
