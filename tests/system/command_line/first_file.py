@@ -200,6 +200,8 @@ class Checks:
             lambda i, x, y, z: (f"2026-11-27 17:25:{16 + i // RATE_HZ:02d}", 6 + 5 * i, x))], axes="x", says=("Milliseconds",))
         self.reads("wit.csv", ["time(s),wx (deg/s),T(°C)", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 25 + i // 500))], axes="x", unasked=True)
         self.reads("zeit.csv", ["Zeitstempel;Drehrate X (deg/s)", *self.rows(lambda i, x, y, z: (1700000000000000 + 5000 * i, str(x).replace(".", ",")), ";")], axes="x")
+        for name, first_s, factor in (("epoch", 1.7e9, 1), ("GPSTOW", 345600, 1), ("Time_of_week", 345600, 1), ("SecondsOfWeek", 345600, 1), ("tiempo", 0, 1), ("timeus", 0, 1e6)):
+            self.reads(f"{name}.csv", [f"{name},rate_degph", *self.rows(lambda i, x, y, z: (f"{(first_s + i / RATE_HZ) * factor:.6f}", 3600 * x))], axes=("",), unasked=True)
         said = by_hand(self.file("pressure.csv", self.rows(lambda i, x, y, z: (967.5372 + 0.0033 * (i // 32 % 2), x, y, z))), RATE_HZ)[1]
         assert "--time" not in said and "--sample-rate HZ" in said and "#2" in said, said
         said = by_hand(self.file("counted.csv", self.rows(lambda i, x, y, z: (275464 + i, x, y, z))), RATE_HZ)[1]
