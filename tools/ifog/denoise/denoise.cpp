@@ -347,7 +347,9 @@ void add_denoise(const Command& program) {
       .add_option("--rate", options->nominal_rate_hz,
                   "Nominal sample rate, Hz; else the driver's or the capture's")
       .positive();
-  command.add_option("--start-up", options->start_up_s, "Seconds that show the noise when none is given (4)")
+  command
+      .add_option("--start-up", options->start_up_s,
+                  "Shortest time to learn the noise in when none is given, s; at least 4096 samples (4)")
       .positive();
   command
       .add_option(
