@@ -17,7 +17,7 @@ constexpr double kFactor = 1.15;       // ratio between widths that are independ
 constexpr double kShare = 0.1;         // of the significance, as one of many tests
 constexpr double kWithoutOne = 12.0;   // required gain of twice the log-likelihood without the best crossing
 constexpr double kNearlyWhole = 0.1;   // tolerance of a coefficient of -1, besides three standard errors
-constexpr std::size_t kMostTurns = 3;  // in one crossing, from one side of the zone to the other
+constexpr std::size_t kMostTurns = 1;  // in one crossing, from one side of the zone to the other
 constexpr double kFar = 1.0 / 3.0;     // of the half width: samples that are on one side
 constexpr std::size_t kWindow = 64;    // samples of the running mean that removes slow error
 

@@ -11,6 +11,7 @@ namespace ifog::tools {
 
 namespace {
 constexpr double kFewest = 8.0;   // means of 1 s
+constexpr double kMuch = 0.05;    // of the mean square; else the bias changed as it does from day to day
 constexpr double kCertain = 3.0;  // standard errors
 }  // namespace
 
@@ -71,7 +72,7 @@ void ReferenceTrial::tell(const std::string& capture) const {
   for (const OfAxis& axis : axes_) {
     const double n = axis.growth.count();
     if (n < kFewest || axis.growth.mean() * std::sqrt(n) < kCertain * axis.growth.deviation()) continue;
-    if (axis.growth.mean() <= 0.0) continue;
+    if (axis.growth.mean() <= kMuch * axis.raw_square.mean()) continue;
     warn(
         "{}: {}1 s means of the corrected rate are {:.4g} deg/h (RMS) from the reference, those of the raw "
         "rate "
