@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "filters/settings/axes.h"
 #include "tools/ifog/denoise/moments.h"
 #include "tools/ifog/denoise/offline_chain.h"
 
@@ -22,16 +20,12 @@ class ReferenceTrial {
 
  private:
   struct OfAxis {
-    std::string name;
-    std::span<const double> reference;                 // empty: none
-    double raw = 0.0, compensated = 0.0, count = 0.0;  // sums of the present second
-    Moments raw_square, compensated_square, growth;    // of means over 1 s; growth: of their square
+    std::string reference;                           // its column
+    Moments raw, compensated;                        // of the present second: minus the reference
+    Moments raw_square, compensated_square, growth;  // of the means over 1 s; growth: of their square
   };
-  void begin(const LongTable& table, const std::vector<std::string>& axes);
-  void add(double time_s, const Axes& raw_radps, const Axes& compensated_radps);
-  void close_second();
+  void add(const LongTable& table, double time_s, const Axes& raw_radps, const Axes& compensated_radps);
 
-  std::span<const double> time_s_;
   std::size_t row_ = 0;
   double second_ = 0.0;
   std::vector<OfAxis> axes_;
