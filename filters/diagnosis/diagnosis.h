@@ -69,6 +69,8 @@ struct HeadingPrediction {
   double aligned_s = 0.0;
   std::vector<double> after_s;    // times after the end of the alignment
   std::vector<double> sigma_rad;  // root of the expected square of the heading error at these times
+  // True if most of the longest one's variance is of a random walk that the record does not show and cannot exclude.
+  bool at_most = false;
 };
 
 // Delay of a reference in the log: it shows the rate of time t at t + delay_s. The figures before and after

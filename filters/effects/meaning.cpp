@@ -211,26 +211,30 @@ Motion motion_of(std::string_view channel) {
     return std::ranges::any_of(units, [&](std::string_view unit) { return channel.ends_with(unit); });
   };
   const ChannelKind kind = kind_of(channel);
-  if (kind == ChannelKind::kReferenceRate || kind == ChannelKind::kTemperature ||
-      kind == ChannelKind::kPressure)
-    return Motion::kNone;
+  if (kind == ChannelKind::kReferenceRate || kind == ChannelKind::kTemperature) return Motion::kNone;
   if (kind == ChannelKind::kOtherAxis) return Motion::kRate;
   if (any({"seis", "geophone"}) && !in({"_m", "_mm", "_um", "_nm", "_mps2"})) return Motion::kVelocity;
   if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
-  // What turns the sensor. A light source has a drive current, too.
-  const bool machine = any({"motor", "wheel", "servo", "gimbal", "mount", "axle", "shaft", "winch",
-                            "thruster", "rudder", "actuator", "throttle"}) ||
-                       (in({"_rpm"}) && any({"drive"}));
-  if (kind == ChannelKind::kSupply ? !machine : kind != ChannelKind::kOther) return Motion::kNone;
+  // What runs or flows beside a sensor at rest.
+  const bool beside = any({"fan", "pump", "cool", "chiller", "compressor", "blower", "flow"});
+  // What turns the sensor, its vehicle or its tower, whatever the unit: %, A, V, hPa, commands.
+  const bool machine =
+      !beside &&
+      (any({"motor",  "wheel",  "servo", "gimbal",  "mount",    "axle",     "shaft", "winch",    "steer",
+            "thrust", "rudder", "helm",  "aileron", "elevator", "actuator", "sail",  "throttle", "engine",
+            "propel", "brake",  "pedal", "force",   "towing",   "torque",   "wind_", "gust"}) ||
+       in({"_rpm", "_N", "_kN", "_Nm", "_kNm"}));
+  if (kind == ChannelKind::kSupply || kind == ChannelKind::kPressure)
+    return machine ? Motion::kRate : Motion::kNone;
+  if (kind != ChannelKind::kOther) return Motion::kNone;
   if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
-  // Flow of air and water is no motion of the sensor.
   if (in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn", "_mmps", "_umps", "_nmps"}))
-    return any({"wind", "airspeed", "flow", "fan"}) ? Motion::kNone : Motion::kVelocity;
+    return beside ? Motion::kNone : Motion::kVelocity;
   if (in({"_rad", "_deg", "_turns", "_mrad", "_urad", "_nrad", "_arcsec"}))
     return any({"phase"}) ? Motion::kNone : Motion::kAngle;
   if (in({"_m", "_mm", "_um", "_nm"}))
     return any({"wave", "lambda", "level", "fibre", "fiber"}) ? Motion::kNone : Motion::kPosition;
-  if (any({"tilt", "inclin", "heading", "yaw", "pitch", "encoder", "steer"})) return Motion::kAngle;
+  if (any({"tilt", "inclin", "heading", "yaw", "pitch", "encoder"})) return Motion::kAngle;
   if (any({"curvature", "odometer", "position"})) return Motion::kPosition;
   return machine ? Motion::kRate : Motion::kNone;
 }

@@ -17,6 +17,19 @@ constexpr double kDelayFactor = 2.0;  // ratio between the delays tried, which s
 // Required gain of twice the log-likelihood: one in 10^4 by chance after some 30 tries.
 constexpr double kCertainlyDelayed = 24.0;
 
+// A lag or an average of the effects delays as well, so that a shorter delay of the channel cannot be told from it.
+double own_delay_s(const std::vector<Candidate>& model, std::size_t channel) {
+  double longest = 0.0;
+  for (const Candidate& each : model) {
+    if (!each.uses(channel)) continue;
+    const double average = each.form == Form::kBandPower && each.second_time_constant_s <= 0.0
+                               ? kPowerAverage_s
+                               : each.second_time_constant_s;
+    longest = std::max(longest, each.time_constant_s + average);
+  }
+  return longest;
+}
+
 }  // namespace
 
 void undo_delay(const BlockGrid& grid, double delay_s, FineChannel& channel) {
@@ -58,11 +71,11 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
       undo_delay(grid, delay_s, trial.channels[c]);
       return 2.0 * fit_whitened(grid, shape, design(trial, model)).log_likelihood();
     };
-    const double none = profile(0.0);
+    const double none = profile(0.0), own = own_delay_s(model, c);
     double best = 0.0, top = none;
     for (double delay = grid.block_s; delay <= longest; delay *= kDelayFactor)
       for (const double each : {delay, -delay})
-        if (const double value = profile(each); value > top) best = each, top = value;
+        if (const double value = delay > own ? profile(each) : none; value > top) best = each, top = value;
     if (top - none < kCertainlyDelayed) continue;
     constexpr int kBits = 9;  // resolution within the bracket
     std::uintmax_t most = 20;

@@ -80,6 +80,10 @@ namespace {
 // halves farther from the step.
 constexpr double kLasting = 0.4;
 constexpr double kLastingFar = 0.25;
+// Required square of a coefficient over its standard error as its scatter between the folds shows it. In motion the
+// reference has errors of its own that grow with the rate (delay, smoothing, flexing), so that one stretch makes a
+// coefficient many standard errors large.
+constexpr double kAlikeInFolds = 16.0;
 
 }  // namespace
 
@@ -102,13 +106,15 @@ bool predicts_held_out(const BlockData& data, const FittedModel& model) {
   }
   const double all_xy = std::accumulate(xy.begin(), xy.end(), 0.0);
   const double all_xx = std::accumulate(xx.begin(), xx.end(), 0.0);
-  double gain = 0.0;
+  double gain = 0.0, scatter = 0.0;
   for (std::size_t f = 0; f < kFolds; ++f) {
+    if (xx[f] > 0.0) scatter += std::pow(xy[f] - all_xy / all_xx * xx[f], 2) / xx[f];
     if (all_xx - xx[f] <= 0.0) continue;
     const double c = (all_xy - xy[f]) / (all_xx - xx[f]);
     gain += 2.0 * c * xy[f] - c * c * xx[f];
   }
-  return gain > 0.0;
+  if (data.reference < 0 || data.grid.dwells) return gain > 0.0;
+  return gain > 0.0 && all_xy * all_xy / all_xx > kAlikeInFolds * scatter / (kFolds - 1);
 }
 
 bool step_persists(const BlockData& data, const FittedModel& model) {

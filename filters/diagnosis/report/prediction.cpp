@@ -162,6 +162,17 @@ double mean_variance(const NoisePosterior& posterior, const std::vector<double>&
   return variance;
 }
 
+namespace {
+
+// The same noise without what wanders.
+NoisePosterior only_white(NoisePosterior posterior) {
+  posterior.flicker_s.clear();
+  for (NoisePosterior::Part& part : posterior.parts) part.walk = part.flicker = part.markov = 0.0;
+  return posterior;
+}
+
+}  // namespace
+
 HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s) {
   const BlockData data = cut_to_blocks({next});
@@ -176,7 +187,8 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
   for (const double horizon : after_s) {
     const HeadingWeights weights = heading_weights(aligned_s, horizon, data.grid.block_s, data.grid.size());
-    double square = heading_variance(diagnosis.noise_posterior, aligned_s, horizon);
+    const double noise = heading_variance(diagnosis.noise_posterior, aligned_s, horizon);
+    double square = noise;
     if (with_covariance) {
       Eigen::VectorXd g(n);
       for (Eigen::Index j = 0; j < n; ++j) g[j] = along(weights, on.gradient.col(j));
@@ -186,6 +198,9 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
     square += std::pow(along(weights, on.uncorrected), 2);
     for (const Effect& line : on.lines) square += line_square(weights, line);
     prediction.sigma_rad.push_back(std::sqrt(square));
+    const bool wanders = diagnosis.noise.B || diagnosis.noise.K;
+    const double white = heading_variance(only_white(diagnosis.noise_posterior), aligned_s, horizon);
+    prediction.at_most = !wanders && noise > 0.5 * square && white < 0.5 * noise;
   }
   return prediction;
 }

@@ -12,19 +12,21 @@
 namespace ifog {
 namespace {
 
-constexpr double kWidestZone = 0.5;   // of the largest rate
-constexpr double kFactor = 1.15;      // ratio between widths that are independent tries
-constexpr double kShare = 0.1;        // of the significance, as one of many tests
-constexpr double kWithoutOne = 12.0;  // required gain of twice the log-likelihood without the best crossing
-constexpr double kNearlyWhole = 0.1;  // tolerance of a coefficient of -1, besides three standard errors
-constexpr std::size_t kWindow = 64;   // samples of the running mean that removes slow error
+constexpr double kWidestZone = 0.5;    // of the largest rate
+constexpr double kFactor = 1.15;       // ratio between widths that are independent tries
+constexpr double kShare = 0.1;         // of the significance, as one of many tests
+constexpr double kWithoutOne = 12.0;   // required gain of twice the log-likelihood without the best crossing
+constexpr double kNearlyWhole = 0.1;   // tolerance of a coefficient of -1, besides three standard errors
+constexpr std::size_t kMostTurns = 1;  // in one crossing, from one side of the zone to the other
+constexpr double kFar = 1.0 / 3.0;     // of the half width: samples that are on one side
+constexpr std::size_t kWindow = 64;    // samples of the running mean that removes slow error
 
 // A sample with a small rate. Its error is relative to the mean of those around it.
 struct Slow {
   double rate, bend;    // bend: second difference of the rate
   double gain;          // reduction of the squared error if the sensor does not sense the rate
   double product;       // rate times error
-  std::size_t passage;  // index of the crossing of zero, which lasts while the rate is below the widest zone
+  std::size_t passage;  // index of the crossing of zero, which lasts while the rate is below the widest
 };
 
 std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::vector<Samples>& rates,
@@ -60,15 +62,23 @@ void leave_out_noise(std::vector<Slow>& slow) {
   std::erase_if(slow, [&](const Slow& each) { return std::abs(each.rate) <= kOwnNoise * noise; });
 }
 
-// Gain without the crossing that gains most.
-double without_best_passage(std::vector<Slow> inside) {
-  std::ranges::sort(inside, [](const Slow& a, const Slow& b) { return a.passage < b.passage; });
-  double all = 0.0, most = 0.0, mine = 0.0;
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (i > 0 && inside[i].passage != inside[i - 1].passage) mine = 0.0;
-    all += inside[i].gain;
-    mine += inside[i].gain;
-    most = std::max(most, mine);
+// Gain of the crossings without the one that gains most. A turn crosses the zone once; at rest the reference's jitter
+// changes its sign time and again, and its error is minus the jitter, as in a dead zone.
+double without_best_crossing(const std::vector<Slow>& inside, double half_width) {
+  double all = 0.0, most = 0.0;
+  for (std::size_t i = 0, end = 0; i < inside.size(); i = end) {
+    double gain = 0.0, side = 0.0;
+    std::size_t turns = 0;
+    for (end = i; end < inside.size() && inside[end].passage == inside[i].passage; ++end) {
+      const double rate = inside[end].rate;
+      gain += inside[end].gain;
+      if (std::abs(rate) < kFar * half_width) continue;
+      turns += rate * side < 0.0 ? 1 : 0;
+      side = rate;
+    }
+    if (turns > kMostTurns) continue;
+    all += gain;
+    most = std::max(most, gain);
   }
   return all - most;
 }
@@ -122,7 +132,9 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   zone.coefficient = product / square;
   zone.coefficient_error = std::sqrt(white_variance / square);
   if (std::abs(zone.coefficient + 1.0) > kNearlyWhole + 3.0 * zone.coefficient_error) return std::nullopt;
-  if (without_best_passage(std::move(slow)) < kWithoutOne * white_variance) return std::nullopt;
+  if (without_best_crossing(slow_samples(errors, rates, zone.half_width), zone.half_width) <
+      kWithoutOne * white_variance)
+    return std::nullopt;
   return zone;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/search/plausible.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "filters/diagnosis/channels/motion.h"
@@ -29,6 +31,12 @@ constexpr std::array<Grade, 3> kGrades = {{{0.02, "an optical gyro", 1.0, 10.0, 
                                            {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
 // Data sheets describe shielded and compensated products; a gyro under development may be a decade worse.
 constexpr double kMargin = 10.0;
+// Most of a bias's RMS change without a reference rate, in multiples of the angle random walk (°/h per °/√h). Over the
+// whole environment makers specify a span of 50 to 200 for fibre-optic gyros (KVH DSP-1750: 0.7 °/h of 1 sigma beside
+// 0.012 °/√h; DSP-3000: 3 beside 0.067), of 60 to 1700 for compensated MEMS (STIM300, ADIS16405), and of up to 10^4 for
+// raw ones (ICM-42688: 0.005 °/s/K and 0.17 °/√h; BMI270: 0.02 °/s/K and 0.42 °/√h, over 60 K). The RMS of a span that
+// is used evenly is its part in √12. Blind sensors and real captures need 550.
+constexpr double kMostOfWalk = 1e4 / (2.0 * std::numbers::sqrt3);
 // m/s; no surface wave or vehicle is faster. So a rotation linked to an acceleration has a coefficient of at
 // least 1/2c.
 constexpr double kQuickest = 8000.0;
@@ -61,6 +69,13 @@ std::optional<double> specified(const Grade& grade, const std::string& channel) 
   }
 }
 
+// The larger one of the fitted and that of neighbouring samples.
+double most_of_walk(const BlockGrid& grid, const NoiseFit& noise) {
+  const double per_second =
+      std::max(noise.white_variance * grid.block_s, grid.white_variance * grid.sample_s);
+  return kMostOfWalk * std::sqrt(per_second) / kDegreePerRootHour * kDegreePerHour;
+}
+
 struct Bound {
   double most;  // rad/s per unit of the channel
   const char* of;
@@ -86,6 +101,37 @@ double size_of(const BlockData& data, const Chosen& effect) {
   return channel > 0.0 ? own / channel : 0.0;
 }
 
+// RMS of what the effects of a channel explain together, rad/s: a line and a power about 0 may be large and opposite.
+double rms_of(const BlockData& data, const SearchResult& found, std::size_t channel) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.grid.size()));
+  for (const Chosen& each : found.chosen)
+    if (each.candidate.channel == channel) sum += each.coefficient * regressor(data, each.candidate);
+  return swing_of(data.grid, std::move(sum)) / std::sqrt(static_cast<double>(data.grid.used()));
+}
+
+// True if its effects are limited by the specification; some voltage is no supply.
+bool is_specified(const std::string& channel) {
+  switch (kind_of(channel)) {
+    case ChannelKind::kTemperature:
+    case ChannelKind::kAcceleration:
+    case ChannelKind::kMagneticField:
+    case ChannelKind::kRamp:
+      return true;
+    case ChannelKind::kSupply:
+      return std::ranges::any_of(std::array{"supply", "batt", "vcc", "vdd", "vin", "bus", "rail", "power"},
+                                 [&](const char* word) { return channel.find(word) != std::string::npos; });
+    default:
+      return false;
+  }
+}
+
+// Rotation has no such limit.
+bool more_than_a_bias(const BlockData& data, const SearchResult& found, const Candidate& of) {
+  if (data.reference >= 0 || of.channel == Candidate::kNone || !carries_over(of.form)) return false;
+  return !is_specified(data.channels[of.channel].name) &&
+         rms_of(data, found, of.channel) > most_of_walk(data.grid, found.noise);
+}
+
 bool may_be_proxy(const BlockData& data, const Candidate& effect) {
   if (effect.channel == Candidate::kNone || effect.first_reading != FirstReading::kError) return false;
   if (!names_in(data.channels[effect.channel].name).less.empty()) return false;
@@ -99,9 +145,13 @@ bool may_be_proxy(const BlockData& data, const Candidate& effect) {
 void doubt_proxies(const BlockData& data, SearchResult& found) {
   const Grade& grade = grade_of(data.grid, found.noise);
   for (Chosen& each : found.chosen) {
-    if (!may_be_proxy(data, each.candidate)) continue;
-    const std::optional<Bound> bound = bound_of(grade, data.channels[each.candidate.channel]);
-    if (bound && size_of(data, each) > bound->most) each.candidate.first_reading = FirstReading::kProxyShown;
+    bool doubted =
+        each.candidate.first_reading == FirstReading::kError && more_than_a_bias(data, found, each.candidate);
+    if (may_be_proxy(data, each.candidate)) {
+      const std::optional<Bound> bound = bound_of(grade, data.channels[each.candidate.channel]);
+      doubted |= bound && size_of(data, each) > bound->most;
+    }
+    if (doubted) each.candidate.first_reading = FirstReading::kProxyShown;
   }
 }
 
@@ -111,11 +161,17 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
   for (const Chosen& each : found.chosen) {
     if (each.candidate.first_reading != FirstReading::kProxyShown) continue;
     const FineChannel& channel = data.channels[each.candidate.channel];
-    const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});
-    words += (words.empty() ? "" : "; ") + channel.name +
-             formatted(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
-                       size_of(data, each) / kDegreePerHour, unit_of(channel.name).c_str(), bound.of,
-                       bound.most / kDegreePerHour);
+    const std::optional<Bound> bound = bound_of(grade, channel);
+    std::string mine = channel.name;
+    if (bound && size_of(data, each) > bound->most)
+      mine += formatted(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
+                        size_of(data, each) / kDegreePerHour, unit_of(channel.name).c_str(), bound->of,
+                        bound->most / kDegreePerHour);
+    else
+      mine += formatted(" explains %.3g °/h, beside this noise a gyro's bias changes by at most %.3g",
+                        rms_of(data, found, each.candidate.channel) / kDegreePerHour,
+                        most_of_walk(data.grid, found.noise) / kDegreePerHour);
+    if (words.find(mine) == std::string::npos) words += (words.empty() ? "" : "; ") + mine;
   }
   if (words.empty()) return words;
   return words +

@@ -13,6 +13,7 @@ namespace ifog {
 // Marks effects of acceleration, temperature, supply or magnetic field that exceed the specifications of
 // gyros with this noise (FirstReading::kProxyShown): reported, not corrected or written. Size of an effect:
 // its range over the range of its channel. data: reconstructed.
+// Without a reference also the effects of a channel without a specification that exceed what any bias does.
 void doubt_proxies(const BlockData& data, SearchResult& found);
 
 // One sentence on all of them for users; empty if there is none.

@@ -158,7 +158,9 @@ TEST(Basics, ARateTableOfAFewPointsIsAccepted) {
 
 // A swing of the sensor itself, seen by what senses motion: nothing of it is an error.
 TEST(Motion, ExplainsNothingWithoutAReference) {
-  for (const char* name : {"sea_mps", "accel_x_mps2", "mount_rad", "deck_radps", "wheel_rpm", "motor_A"}) {
+  for (const char* name :
+       {"sea_mps", "accel_x_mps2", "mount_rad", "deck_radps", "wheel_rpm", "motor_A", "thrust_N",
+        "rudder_percent", "steer_cmd", "tension_kN", "wind_mps", "brake_pressure_hPa"}) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
     Rows rows;
@@ -236,7 +238,7 @@ TEST(Motion, IsToldByUnitAndName) {
   EXPECT_EQ(motion_of("seis_z_mps"), Motion::kVelocity);
   EXPECT_EQ(motion_of("north_um"), Motion::kPosition);
   EXPECT_EQ(motion_of("attitude_deg"), Motion::kAngle);
-  for (const char* name : {"temperature_degC", "supply_V", "wind_mps", "pump_rpm", "laser_wavelength_nm",
+  for (const char* name : {"temperature_degC", "supply_V", "fan_rpm", "pump_rpm", "laser_wavelength_nm",
                            "reference_rate_radps", "seis_temperature_degC", "pressure_hPa"})
     EXPECT_EQ(motion_of(name), Motion::kNone) << name;
 }

@@ -45,6 +45,7 @@
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/model_trial.h"
 #include "tools/ifog/denoise/offline_chain.h"
+#include "tools/ifog/denoise/reference_trial.h"
 #include "tools/report/picture.h"
 
 namespace ifog::tools {
@@ -245,7 +246,7 @@ void name_files(DenoiseOptions& options) {
 
 template <class Settings>
 OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
-                            DenoisedRows& rows, const OfflineSink& sink) {
+                            DenoisedRows& rows, OfflineSink sink) {
   LongTable table = options.input.read_long(capture);
   table.clean_and_tell(leave_out_placeholders, options.capture);
   leave_out_dead_axes(table, options.capture);
@@ -255,7 +256,10 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
   const std::string model = of.model ? of.model->identity() : "";
   if (of.model && !table.dead_axes.empty())
     of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
+  ReferenceTrial trial;
+  if (of.model) trial.follow(table, sink);
   OfflineResult result = denoise_capture(table, options.capture, of, sink);
+  trial.tell(options.capture);
   result.model = model;  // of the whole file, including effects of axes that are missing here
   return result;
 }

@@ -117,8 +117,11 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
                           percent(diagnosis.unexplained.fraction), diagnosis.unexplained.means_s) +
               " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
-    report += fmt::format("\nNext capture, bias averaged over {:.3g} s at rest: heading error (1 sigma)",
-                          diagnosis.heading.aligned_s);
+    report += fmt::format("\nNext capture, bias averaged over {:.3g} s at rest: heading error ({})",
+                          diagnosis.heading.aligned_s,
+                          diagnosis.heading.at_most
+                              ? "at most: with a random walk that this record is too short to exclude"
+                              : "1 sigma");
     for (std::size_t i = 0; i < diagnosis.heading.after_s.size(); ++i) {
       report += fmt::format("{} {:.3g}° after {:.4g} s", i ? "," : "",
                             diagnosis.heading.sigma_rad[i] / kDegree, diagnosis.heading.after_s[i]);
