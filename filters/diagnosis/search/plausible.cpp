@@ -32,10 +32,9 @@ constexpr std::array<Grade, 3> kGrades = {{{0.02, "an optical gyro", 1.0, 10.0, 
 // Data sheets describe shielded and compensated products; a gyro under development may be a decade worse.
 constexpr double kMargin = 10.0;
 // Most of a bias's RMS change without a reference rate, in multiples of the angle random walk (°/h per °/√h). Over the
-// whole environment makers specify a span of 50 to 200 for fibre-optic gyros (KVH DSP-1750: 0.7 °/h of 1 sigma beside
-// 0.012 °/√h; DSP-3000: 3 beside 0.067), of 60 to 1700 for compensated MEMS (STIM300, ADIS16405), and of up to 10^4 for
-// raw ones (ICM-42688: 0.005 °/s/K and 0.17 °/√h; BMI270: 0.02 °/s/K and 0.42 °/√h, over 60 K). The RMS of a span that
-// is used evenly is its part in √12. Blind sensors and real captures need 550.
+// whole environment makers specify a span of some 60 for fibre-optic gyros (KVH 1750: 0.7 °/h beside 0.012 °/√h), of
+// 10³ for MEMS (ADIS16405: 0.01 °/s/K beside 2 °/√h) and of up to 10⁴ for the cheapest (BMI270: 0.02 °/s/K beside
+// 0.42 °/√h, over 60 K). The RMS of a span that is used evenly is its part in √12. Blind sensors need 543.
 constexpr double kMostOfWalk = 1e4 / (2.0 * std::numbers::sqrt3);
 // m/s; no surface wave or vehicle is faster. So a rotation linked to an acceleration has a coefficient of at
 // least 1/2c.

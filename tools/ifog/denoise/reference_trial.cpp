@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/denoise/reference_trial.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,9 +11,12 @@
 namespace ifog::tools {
 
 void ReferenceTrial::follow(const LongTable& table, OfflineSink& sink) {
-  sink.begin = [this, next = std::move(sink.begin)](const std::vector<std::string>& axes) {
-    for (const std::string& axis : axes)
-      axes_.emplace_back().reference = "reference_rate_" + (axis.empty() ? "" : axis + "_") + "radps";
+  sink.begin = [this, &table, next = std::move(sink.begin)](const std::vector<std::string>& axes) {
+    for (const std::string& axis : axes) {
+      const std::string name = "reference_rate_" + (axis.empty() ? "" : axis + "_") + "radps";
+      const auto found = std::ranges::find(table.columns, name, &LongColumn::name);
+      axes_.emplace_back().reference = found == table.columns.end() ? nullptr : &*found;
+    }
     next(axes);
   };
   sink.sample = [this, &table, next = std::move(sink.sample)](double time_s, const Increment& increment,
@@ -29,6 +33,7 @@ void ReferenceTrial::add(const LongTable& table, double time_s, const Axes& raw_
   const bool over = std::exchange(second_, std::floor(time_s)) != second_;
   for (std::size_t i = 0; i < axes_.size() && row_ < table.size(); ++i) {
     OfAxis& axis = axes_[i];
+    if (axis.reference == nullptr) continue;
     if (over && axis.raw.count() > 0.0) {
       const double raw = std::pow(axis.raw.mean(), 2), compensated = std::pow(axis.compensated.mean(), 2);
       axis.raw_square.add(raw);
@@ -36,11 +41,11 @@ void ReferenceTrial::add(const LongTable& table, double time_s, const Axes& raw_
       axis.growth.add(compensated - raw);
       axis.raw = axis.compensated = {};
     }
-    for (const LongColumn& column : table.columns)
-      if (column.name == axis.reference && std::isfinite(raw_radps[i] + compensated_radps[i])) {
-        axis.raw.add(raw_radps[i] - column.values[row_]);
-        axis.compensated.add(compensated_radps[i] - column.values[row_]);
-      }
+    const double reference = axis.reference->values[row_], raw = raw_radps[i] - reference,
+                 compensated = compensated_radps[i] - reference;
+    if (!std::isfinite(raw + compensated)) continue;
+    axis.raw.add(raw);
+    axis.compensated.add(compensated);
   }
 }
 
@@ -55,7 +60,7 @@ void ReferenceTrial::tell(const std::string& capture) const {
         "{}: 1 s means of the corrected rate are {:.4g} deg/h (RMS) from {}, those of the raw rate {:.4g}: "
         "the "
         "model does not hold here; run ifog diagnose on both captures together\n",
-        capture, std::sqrt(axis.compensated_square.mean()) / kDegreePerHour, axis.reference,
+        capture, std::sqrt(axis.compensated_square.mean()) / kDegreePerHour, axis.reference->name,
         std::sqrt(axis.raw_square.mean()) / kDegreePerHour);
   }
 }

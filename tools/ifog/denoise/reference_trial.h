@@ -20,7 +20,7 @@ class ReferenceTrial {
 
  private:
   struct OfAxis {
-    std::string reference;                           // its column
+    const LongColumn* reference = nullptr;           // null: there is none
     Moments raw, compensated;                        // of the present second: minus the reference
     Moments raw_square, compensated_square, growth;  // of the means over 1 s; growth: of their square
   };

@@ -120,7 +120,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
     report += fmt::format("\nNext capture, bias averaged over {:.3g} s at rest: heading error ({})",
                           diagnosis.heading.aligned_s,
                           diagnosis.heading.at_most
-                              ? "at most: with a random walk that this record is too short to exclude"
+                              ? "at most: with a random walk that this record does not exclude"
                               : "1 sigma");
     for (std::size_t i = 0; i < diagnosis.heading.after_s.size(); ++i) {
       report += fmt::format("{} {:.3g}° after {:.4g} s", i ? "," : "",
