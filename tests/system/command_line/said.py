@@ -324,6 +324,16 @@ class Checks:
         assert "channel that the model wants" in text and "outside the range" in text, text
         assert "the model" not in said("denoise", path, *out)
 
+    def check_a_model_that_does_not_hold_beside_a_reference_is_said(self):
+        """A temperature that no longer acts as the model has it; a model that helps, or changes the bias by less than it wanders, is not one."""
+        truth = [1e-3 * math.sin(0.01 * i) for i in range(ROWS)]
+        warm = [20 + 0.5 * math.sin(0.003 * i) for i in range(ROWS)]
+        for slope, holds in ((1e-6, True), (-1e-6, False), (0.0, False)):
+            rate = [t + slope * (w - 20) + 0.01 * n for t, w, n in zip(truth, warm, self.noise)]
+            path = self.write(f"beside_{slope}.csv", {"rate_radps": rate, "reference_rate_radps": truth, "temperature_degC": warm})
+            text = said("denoise", path, "--model", self.model("warm.toml"), "--output", self.folder / "beside_out.csv")
+            assert ("the model does not hold here" in text) != holds, f"{slope}: {text}"
+
     def check_every_number_is_finite(self):
         """For every command, from its own description: an option with a numeric value accepts nothing else."""
         numbers, words = {"NUMBER", "SECONDS", "S", "TIME"}, {"N", "INDEX"}
