@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "drivers/timeline/sample_pace.h"
+
 namespace ifog {
 
 class Ticks {
@@ -32,13 +34,10 @@ class Ticks {
   // passed_ns >= 0: since the previous sample; counted: samples by the counter, 0: none.
   [[nodiscard]] Step take(std::int64_t passed_ns, std::uint64_t counted) noexcept {
     const double passed_s = static_cast<double>(passed_ns) * 1e-9;
-    const bool first_tick = stood_ && tick_ns_ == 0;  // how long the clock stood is unknown
     learn(passed_ns, passed_s);
     owed_s_ = coarse() ? owed_s_ + passed_s : passed_s;
     const double samples = (owed_s_ - (stood_ ? 1.0 : 0.25) * tick_s()) / nominal_s_;
-    Step step{counted > 0 ? counted : 1, owed_s_};
-    if (counted == 0 && !first_tick && samples >= 1.5)
-      step.samples = static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18)));
+    Step step{counted > 0 ? counted : SamplePace::at_least_one(samples), owed_s_};
     if (coarse()) {
       const double slack_s = tick_ns_ > 0 ? 2.0 * tick_s() : HUGE_VAL;
       step.dt_s = std::clamp(static_cast<double>(step.samples) * nominal_s_, owed_s_ - slack_s,

@@ -118,24 +118,21 @@ std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexce
   return rounds > 0.0 ? least + static_cast<std::uint64_t>(std::min(rounds, 1e12)) * modulus_ : least;
 }
 
-// Unwrapped stamp: nearest to the counter, or to the elapsed time after a silence that the counter cannot
-// measure.
+// Unwrapped stamp (KVH 1750 after 71 minutes, DBC signals after one): nearest to the elapsed time after a
+// silence, otherwise to the counter.
 void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   std::int64_t step_ns = ns_between(last_.stamp_ns, frame.stamp_ns);
   if (frame.wrap_ns > 0) {
     const double wrap_s = seconds(frame.wrap_ns);
     step_ns = (step_ns % frame.wrap_ns + frame.wrap_ns) % frame.wrap_ns;
     const std::uint64_t back = modulus_ - now.ahead;
-    const bool goes_back =
-        now.counted && !now.silent && now.ahead > modulus_ / 2 && back < RecentFrames::kMost;
-    const bool by_count = now.counted && (!now.silent || pace_.time_s(modulus_) > wrap_s);
     double near_s = pace_.known() ? pace_.nominal_s() : 0.0;
-    if (goes_back)
-      near_s = -pace_.time_s(back);
-    else if (by_count)
-      near_s = pace_.time_s(now.counted_samples);
-    else if (now.timed && (now.silent || !delay_))
+    if (now.silent)
       near_s = now.elapsed_s;
+    else if (now.counted && now.ahead <= modulus_ / 2)
+      near_s = pace_.time_s(now.counted_samples);
+    else if (now.counted && back < RecentFrames::kMost)
+      near_s = -pace_.time_s(back);
     const double rounds = std::clamp(std::round((near_s - seconds(step_ns)) / wrap_s), -1.0, 9e9 / wrap_s);
     step_ns = ns_after(step_ns, static_cast<std::int64_t>(rounds) * frame.wrap_ns);
   }
@@ -144,8 +141,7 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
 }
 
 bool Timeline::Look::contradicts(double claimed_s) const noexcept {
-  const double most_s = std::max(elapsed_s, quiet_s) + slack_s;
-  return timed && claimed_s > most_s + kClocksApart * claimed_s;
+  return timed && claimed_s > elapsed_s + slack_s + kClocksApart * claimed_s;
 }
 
 // A duplicate, or overtaken: counter or clock goes back slightly without a silence.
@@ -162,7 +158,7 @@ bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   if (modulus_ - now.ahead > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
   const Had was = recent_.had(modulus_ - now.ahead, now.digest);
   const double ahead_s = pace_.time_s(now.ahead);
-  const bool usual = now.timed && !delay_ && !now.contradicts(ahead_s);
+  const bool usual = now.timed && !now.contradicts(ahead_s);
   // Frames of a coarse sensor at rest are equal, and none of them comes as late as the next after a loss.
   return (was == Had::same && now.quiet_s < 0.5 * ahead_s) || (was == Had::no && !usual);
 }
@@ -183,7 +179,7 @@ bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double apart_s = 2.0 * pace_.nominal_s() + kClocksApart * now.passed_s + grain_s;
   if (now.counted && std::abs(now.passed_s - counted_s) <= apart_s) return false;
   if (now.contradicts(now.passed_s - grain_s)) return true;
-  if (!now.counted || now.silent || delay_) return false;
+  if (!now.counted) return false;
   if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
   return std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
 }
@@ -199,8 +195,8 @@ std::uint64_t Timeline::samples_by_clock(const Look& now) const noexcept {
   const bool stood = took_s > kStoodStill * usual_s + grain_s && took_s > 2.0 * each_s_ && each_s_ > 0.0;
   const bool beyond =
       samples > 2.0 && samples * usual_s > 1.5 * now.passed_s + 2.0 * pace_.nominal_s() + grain_s;
-  return stood || (beyond && each_s_ > 0.0) ? SamplePace::at_least_one(now.passed_s / usual_s)
-                                            : SamplePace::at_least_one(samples);
+  return stood || beyond ? SamplePace::at_least_one(now.passed_s / usual_s)
+                         : SamplePace::at_least_one(samples);
 }
 
 // False: there is no clock, or it is invalid here.
@@ -331,7 +327,6 @@ void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
   stall_s_ *= kForgets;
   if (late_s < -(kPrompt_s + scatter_s_) && ++early_ < kEarly) return;
   if (late_s < 0.0) {
-    if (early_ >= kEarly) delay_.reset();
     owed_s_ = early_ >= kEarly ? 0.0 : owed_s_ + late_s;
     due_ns_ = arrival_ns;
   } else if (!delay_) {
