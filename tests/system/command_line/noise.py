@@ -69,6 +69,18 @@ class Noise:
         said = ran("denoise", short, "--output", self.folder / "short.out.csv", "--plot", picture)
         assert "4096 samples at rest are needed" in said.stderr and "Rate, not denoised" in picture.read_text(), said.stderr
 
+    def check_what_was_not_filtered_is_not_said_to_be(self):
+        """As many samples as the start-up needs: the noise is known only after the last one."""
+        chance = random.Random(5)
+        for name, rows, rate_hz, filtered in (("second", 4000, 20000, False), ("short", 350, 100, False), ("long", 6000, 100, True)):
+            path, out = self.folder / f"{name}.csv", self.folder / "unfiltered.csv"
+            path.write_text("time_s,rate_radps\n" + "".join(f"{i / rate_hz!r},{chance.gauss(0, 1e-5)!r}\n" for i in range(rows)))
+            result = ran("denoise", path, "--output", out)
+            said, found = result.stdout + result.stderr, columns(out)
+            assert result.returncode == 0 and ("from the first seconds" in said) == filtered, said
+            assert filtered or found["denoised_radps"] == found["raw_radps"], "filtered after all"
+            assert filtered or all(part in said for part in ("not run", "4096 samples", "--model")), said
+
     def check_hourly_rates_are_asked_about(self):
         """10.3 °/h of Earth's rate in a column of rad/s is interpreted correctly."""
         hourly = self.folder / "hourly.csv"

@@ -290,19 +290,6 @@ class Checks:
             assert ("subtracted from each of x, y, z" in text) == is_said, text
         assert "each of" not in said("denoise", one, "--model", self.model("one_axis.toml"), *out)
 
-    def check_what_was_not_filtered_is_not_said_to_be(self):
-        """As many samples as the start-up needs: the noise is known only after the last one."""
-        fast = self.write("second.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(4000)]}, [i / 20000 for i in range(4000)])
-        short = self.write("short.csv", {"rate_radps": self.noise[:350]})
-        for path in (fast, short):
-            out = self.folder / "unfiltered.csv"
-            text = said("denoise", path, "--output", out)
-            found = columns(out)
-            assert found["denoised_radps"] == found["raw_radps"], "filtered after all"
-            assert "not run" in text and "4096 samples" in text and "--model" in text and "from the first seconds" not in text, text
-        long = self.write("long.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(6000)]})
-        assert "from the first seconds" in said("denoise", long, "--output", self.folder / "filtered.csv")
-
     def check_a_correction_that_is_not_there_is_said(self):
         """At rest; `share` of the model's correction is in the data. On an oscillating table the rate is not an error."""
         times = [float(i) for i in range(1200)]
