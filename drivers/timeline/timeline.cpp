@@ -119,7 +119,7 @@ std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexce
 }
 
 // Unwrapped stamp (KVH 1750 after 71 minutes, DBC signals after one): nearest to the elapsed time after a
-// silence, otherwise to the counter.
+// silence or without a counter, otherwise to the counter.
 void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   std::int64_t step_ns = ns_between(last_.stamp_ns, frame.stamp_ns);
   if (frame.wrap_ns > 0) {
@@ -127,7 +127,7 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
     step_ns = (step_ns % frame.wrap_ns + frame.wrap_ns) % frame.wrap_ns;
     const std::uint64_t back = modulus_ - now.ahead;
     double near_s = pace_.known() ? pace_.nominal_s() : 0.0;
-    if (now.silent)
+    if (now.silent || (!now.counted && now.timed && !delay_))
       near_s = now.elapsed_s;
     else if (now.counted && now.ahead <= modulus_ / 2)
       near_s = pace_.time_s(now.counted_samples);
