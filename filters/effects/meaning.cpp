@@ -215,11 +215,11 @@ Motion motion_of(std::string_view channel) {
   if (kind == ChannelKind::kOtherAxis) return Motion::kRate;
   if (any({"seis", "geophone"}) && !in({"_m", "_mm", "_um", "_nm", "_mps2"})) return Motion::kVelocity;
   if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
-  // What runs or flows beside a sensor at rest.
-  const bool beside = any({"fan", "pump", "cool", "chiller", "compressor", "blower", "flow"});
+  // What runs or flows near a sensor at rest.
+  const bool near_by = any({"fan", "pump", "cool", "chiller", "compressor", "blower", "flow"});
   // What turns the sensor, its vehicle or its tower, whatever the unit: %, A, V, hPa, commands.
   const bool machine =
-      !beside &&
+      !near_by &&
       (any({"motor",  "wheel",  "servo", "gimbal",  "mount",    "axle",     "shaft", "winch",    "steer",
             "thrust", "rudder", "helm",  "aileron", "elevator", "actuator", "sail",  "throttle", "engine",
             "propel", "brake",  "pedal", "force",   "towing",   "torque",   "wind_", "gust"}) ||
@@ -229,7 +229,7 @@ Motion motion_of(std::string_view channel) {
   if (kind != ChannelKind::kOther) return Motion::kNone;
   if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
   if (in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn", "_mmps", "_umps", "_nmps"}))
-    return beside ? Motion::kNone : Motion::kVelocity;
+    return near_by ? Motion::kNone : Motion::kVelocity;
   if (in({"_rad", "_deg", "_turns", "_mrad", "_urad", "_nrad", "_arcsec"}))
     return any({"phase"}) ? Motion::kNone : Motion::kAngle;
   if (in({"_m", "_mm", "_um", "_nm"}))

@@ -111,8 +111,8 @@ std::string label_in(std::string_view between) {
   const std::size_t begin = between.find_first_not_of(kAround);
   if (begin == std::string_view::npos) return "";
   std::size_t behind = between.find_last_not_of(kAround) + 1;
-  if (between.substr(begin, behind - begin).find('(') != std::string_view::npos && between[behind] == ')')
-    ++behind;
+  const bool opened = between.substr(begin, behind - begin).find('(') != std::string_view::npos;
+  if (opened && between.substr(behind, 1) == ")") ++behind;
   std::string_view label = between.substr(begin, behind - begin);
   const std::size_t other = label.find_last_of(",;|:="), gap = label.rfind("  ");
   for (const std::size_t end : {other, gap == std::string_view::npos ? gap : gap + 1})

@@ -214,7 +214,7 @@ void keep_kind(const CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   const auto is_wanted = [&](const Row& row) {
     return place < row.cells.size() && row.cells[place] == layout.only_value;
   };
-  if (std::ranges::none_of(grid.rows(), is_wanted)) return;  // told where the rows are read
+  if (std::ranges::none_of(grid.rows(), is_wanted)) return;  // reported where the rows are read
   std::size_t i = 0;
   std::erase_if(lines, [&](const Line&) {
     const Row& row = grid.rows()[i++];

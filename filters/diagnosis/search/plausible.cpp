@@ -32,8 +32,8 @@ constexpr std::array<Grade, 3> kGrades = {{{0.02, "an optical gyro", 1.0, 10.0, 
 // Data sheets describe shielded and compensated products; a gyro under development may be a decade worse.
 constexpr double kMargin = 10.0;
 // Most of a bias's RMS change without a reference rate, in multiples of the angle random walk (°/h per °/√h). Over the
-// whole environment makers specify a span of some 60 for fibre-optic gyros (KVH 1750: 0.7 °/h beside 0.012 °/√h), of
-// 10³ for MEMS (ADIS16405: 0.01 °/s/K beside 2 °/√h) and of up to 10⁴ for the cheapest (BMI270: 0.02 °/s/K beside
+// whole environment makers specify a span of some 60 for fibre-optic gyros (KVH 1750: 0.7 °/h with 0.012 °/√h), of
+// 10³ for MEMS (ADIS16405: 0.01 °/s/K with 2 °/√h) and of up to 10⁴ for the cheapest (BMI270: 0.02 °/s/K with
 // 0.42 °/√h, over 60 K). The RMS of a span that is used evenly is its part in √12. Blind sensors need 543.
 constexpr double kMostOfWalk = 1e4 / (2.0 * std::numbers::sqrt3);
 // m/s; no surface wave or vehicle is faster. So a rotation linked to an acceleration has a coefficient of at
@@ -167,7 +167,7 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
                         size_of(data, each) / kDegreePerHour, unit_of(channel.name).c_str(), bound->of,
                         bound->most / kDegreePerHour);
     else
-      mine += formatted(" explains %.3g °/h, beside this noise a gyro's bias changes by at most %.3g",
+      mine += formatted(" explains %.3g °/h, the bias of a gyro with this noise changes by at most %.3g",
                         rms_of(data, found, each.candidate.channel) / kDegreePerHour,
                         most_of_walk(data.grid, found.noise) / kDegreePerHour);
     if (words.find(mine) == std::string::npos) words += (words.empty() ? "" : "; ") + mine;
