@@ -52,7 +52,7 @@ struct Indistinguishable {
 
 struct Unexplained {
   double fraction = 0.0;  // variance of the error that is neither noise nor explained, as a fraction
-  double means_s = 1.0;   // length of the means to which the fraction refers
+  double means_s = 1.0;   // length of the means to which the fraction refers; a sample's for a fast line
   // "nothing", "slow", "line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
   std::string kind;
   std::string hint;

@@ -21,6 +21,12 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
 
+// rad or rad/s
+double value_of(const Axis& axis, std::span<const std::uint8_t> data) noexcept {
+  const double value = physical(*axis.pick.signal, raw_bits(*axis.pick.signal, data)) * axis.si_per_unit;
+  return axis.sign != nullptr && raw_bits(*axis.sign, data) != 0 ? -value : value;
+}
+
 // A float may be out of range for int64 in ns.
 std::optional<std::int64_t> nanoseconds(double seconds) {
   constexpr double kMost = 9e9, kNsPerSecond = 1e9;
@@ -32,8 +38,7 @@ std::optional<std::int64_t> nanoseconds(double seconds) {
 
 Decoder::Decoder(const Picks& picks) : picks_(picks) {
   for (const Pick& counter : picks.counter) add(Role::kCounter, 0, counter);
-  for (std::size_t i = 0; i < picks.axes.size(); ++i)
-    add(Role::kAxis, i, picks.axes[i].pick, picks.axes[i].si_per_unit);
+  for (std::size_t i = 0; i < picks.axes.size(); ++i) add(Role::kAxis, i, picks.axes[i].pick);
   if (picks.status) add(Role::kStatus, 0, *picks.status);
   if (picks.time) {
     add(Role::kTime, 0, *picks.time);
@@ -49,12 +54,15 @@ Decoder::Decoder(const Picks& picks) : picks_(picks) {
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }
 
-void Decoder::add(Role role, std::size_t index, const Pick& pick, double si_per_unit) {
+void Decoder::add(Role role, std::size_t index, const Pick& pick) {
   auto at = std::ranges::find_if(wanted_, [&](const Wanted& w) {
     return w.id == pick.message->id && w.extended == pick.message->extended;
   });
   if (at == wanted_.end()) at = wanted_.insert(at, {pick.message->id, pick.message->extended, {}});
-  at->entries.push_back({role, index, pick.message, pick.signal, bytes_needed(*pick.signal), si_per_unit});
+  std::size_t bytes = bytes_needed(*pick.signal);
+  if (const Signal* sign = role == Role::kAxis ? picks_.axes[index].sign : nullptr)
+    bytes = std::max(bytes, bytes_needed(*sign));
+  at->entries.push_back({role, index, pick.message, pick.signal, bytes});
 }
 
 void Decoder::learn_order() {
@@ -180,7 +188,7 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
   }
   for (const Entry& entry : wanted.entries)
     if (selected(*entry.message, *entry.signal, data) && (entry.role != Role::kCounter || brings != 0))
-      set(entry, raw_bits(*entry.signal, data));
+      set(entry, data);
   ++counters_.frames_good;
   if (brings != 0) ++frames_;
   if (brings != 0 && present_ == all_axes_) complete(frame.arrival_ns, emit, sink);
@@ -191,20 +199,20 @@ bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
                       const double* known) const noexcept {
   for (const Entry& entry : wanted.entries) {
     if (entry.role != Role::kAxis || !selected(*entry.message, *entry.signal, data)) continue;
-    const double value = physical(*entry.signal, raw_bits(*entry.signal, data)) * entry.si_per_unit;
-    if (!same_value(value, known[entry.index])) return false;
+    if (!same_value(value_of(picks_.axes[entry.index], data), known[entry.index])) return false;
   }
   return true;
 }
 
-void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
+void Decoder::set(const Entry& entry, std::span<const std::uint8_t> data) noexcept {
+  const std::uint64_t bits = raw_bits(*entry.signal, data);
   switch (entry.role) {
     case Role::kCounter:
       sample_.sequence = static_cast<std::uint32_t>(bits % picks_.counter_modulus);
       counted_ = true;
       break;
     case Role::kAxis: {
-      const double value = physical(*entry.signal, bits) * entry.si_per_unit;
+      const double value = value_of(picks_.axes[entry.index], data);
       sample_.value[entry.index] = value;
       if (std::isfinite(value)) good_ |= bit(entry.index);
       judge(*entry.signal, physical(*entry.signal, bits));

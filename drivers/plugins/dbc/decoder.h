@@ -41,8 +41,7 @@ class Decoder {
     std::size_t index;  // of the axis or environment channel
     const Message* message;
     const Signal* signal;
-    std::size_t bytes;   // required length of the frame
-    double si_per_unit;  // axes only
+    std::size_t bytes;  // required length of the frame
   };
   struct Wanted {
     std::uint32_t id;
@@ -50,11 +49,11 @@ class Decoder {
     std::vector<Entry> entries;
   };
 
-  void add(Role role, std::size_t index, const Pick& pick, double si_per_unit = 1.0);
+  void add(Role role, std::size_t index, const Pick& pick);
   void learn_order();
   void learn_pause(std::uint32_t brings, std::int64_t arrival_ns) noexcept;
   void take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
-  void set(const Entry& entry, std::uint64_t bits) noexcept;
+  void set(const Entry& entry, std::span<const std::uint8_t> data) noexcept;
   [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
                              const double* known) const noexcept;
   [[nodiscard]] bool repeats_last() const noexcept;

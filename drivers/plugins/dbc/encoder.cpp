@@ -72,8 +72,10 @@ void Encoder::add(Role role, std::size_t index, const Pick& pick) {
 
 std::uint64_t Encoder::bits_of(const Entry& entry, const ifog_sample& sample) const {
   switch (entry.role) {
-    case Role::kAxis:
-      return raw_of(*entry.signal, sample.value[entry.index] / picks_.axes[entry.index].si_per_unit);
+    case Role::kAxis: {
+      const double value = sample.value[entry.index] / picks_.axes[entry.index].si_per_unit;
+      return raw_of(*entry.signal, picks_.axes[entry.index].sign != nullptr ? std::abs(value) : value);
+    }
     case Role::kCounter:
       return sent_;
     case Role::kStatus:
@@ -117,6 +119,8 @@ void Encoder::put(const Layout& layout, const ifog_sample& sample, ifog_emit_can
     // An integer cannot express "unknown"; the bits stay 0.
     if (entry.role == Role::kEnvironment && integer && std::isnan(sample.environment[entry.index])) continue;
     set_raw_bits(*entry.signal, bits_of(entry, sample), data);
+    if (const Signal* sign = entry.role == Role::kAxis ? picks_.axes[entry.index].sign : nullptr)
+      set_raw_bits(*sign, sample.value[entry.index] < 0.0 ? 1 : 0, data);
   }
   emit(sink, &frame);
 }

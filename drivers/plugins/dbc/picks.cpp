@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <numbers>
 #include <string_view>
 
@@ -24,6 +25,9 @@ constexpr std::array kOptions{
     ifog_option{"kind", "rate | delta | angle", "rate", "what these signals are"},
     ifog_option{"unit", "auto | rad | deg | arcsec | mrad | urad | rev, for a rate also UNIT/s, /min or /h",
                 "auto", "unit of the signals; auto takes the one the DBC file states"},
+    ifog_option{"sign", "auto | none", "auto",
+                "auto: an unsigned signal is negative where a bit of its message is 1 that has its name with "
+                "Sign or VZ in it"},
     ifog_option{"wrap", "auto | none | a number > 0 in the signal's unit", "auto",
                 "an angle starts again at this; auto: an integer signal's range, one turn for a float"},
     ifog_option{"counter", "[MESSAGE.]SIGNAL", "",
@@ -69,6 +73,16 @@ std::string shown(const Pick& pick) {
   return printable(display_name(*pick.message) + "." + display_name(*pick.signal), 2 * kLongestQuote);
 }
 
+// In lower case, without '_' and without these words.
+std::string plain(std::string_view name, std::initializer_list<std::string_view> words = {}) {
+  std::string out;
+  for (const char c : name)
+    if (c != '_') out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const std::string_view word : words)
+    if (const std::size_t at = out.find(word); at != std::string::npos) out.erase(at, word.size());
+  return out;
+}
+
 std::optional<std::uint64_t> whole_number(std::string_view text) {
   int base = 10;
   if (text.starts_with("0x") || text.starts_with("0X")) {
@@ -96,6 +110,7 @@ class Reader {
     time();
     environments();
     out_.rate_hz = options_.number("rate_hz", 0.0, 1e6, "a number >= 0, at most 1000000");
+    remark_bad_lines();
   }
 
  private:
@@ -126,6 +141,32 @@ class Reader {
     return found[0];
   }
 
+  // Files of whole cars have many bad lines, mostly of other messages.
+  void remark_bad_lines() {
+    constexpr std::size_t kShown = 3;
+    const std::vector<std::string>& bad = out_.database.warnings;
+    const std::size_t shown = std::min(kShown, bad.size());
+    if (bad.size() > shown)
+      out_.remarks.insert(out_.remarks.begin(), std::to_string(bad.size() - shown) +
+                                                    " more bad lines, of signals that are not used");
+    out_.remarks.insert(out_.remarks.begin(), bad.begin(), bad.begin() + static_cast<std::ptrdiff_t>(shown));
+  }
+
+  // Sign and modulus apart, as VW sends them: Yaw_Rate and Yaw_Rate_Sign, ESP_Gierrate and ESP_VZ_Gierrate.
+  const Signal* sign_of(const Pick& pick) {
+    const bool never = options_.choice<bool>("sign", {{"auto", false}, {"none", true}});
+    const Signal& value = *pick.signal;
+    if (never || value.type != ValueType::kUnsigned || value.offset < 0.0) return nullptr;
+    for (const Signal& bit : pick.message->signals) {
+      if (bit.length != 1 || !bit.refused.empty() || bit.selector != kNone || &bit == &value) continue;
+      if (plain(bit.name, {"vorzeichen", "sign", "vz"}) != plain(value.name)) continue;
+      out_.remarks.push_back(shown(pick) + " is negative where " + display_name(bit) +
+                             " is 1; option sign = none takes it as it is");
+      return &bit;
+    }
+    return nullptr;
+  }
+
   void axes() {
     const bool single = options_.given("signal");
     for (const std::string_view key : {"signal", "x", "y", "z"}) {
@@ -146,6 +187,7 @@ class Reader {
                                                    : "angle (rad, deg, arcsec, …)") +
                 (automatic ? ", as the DBC file gives " + in_quotes(unit) + " for " + shown(axis.pick) : ""));
       axis.si_per_unit = *scale;
+      axis.sign = sign_of(axis.pick);
       out_.axes.push_back(std::move(axis));
     }
     if (out_.axes.empty()) options_.fail("signal", "a signal here, or in x, y, z: " + known_signals());
@@ -244,7 +286,7 @@ class Reader {
       std::string remark;
       out_.environments.push_back(
           {std::string(column), pick, convert_to_column(pick.signal->unit, column, remark)});
-      if (!remark.empty()) out_.database.warnings.push_back("environment: " + remark);
+      if (!remark.empty()) out_.remarks.push_back("environment: " + remark);
     }
   }
 

@@ -24,7 +24,8 @@ using Pick = SignalInMessage;
 struct Axis {
   std::string name;  // "x", "y", "z", or "" for the single axis of `signal`
   Pick pick;
-  double si_per_unit = 1.0;  // rad or rad/s per physical unit
+  double si_per_unit = 1.0;      // rad or rad/s per physical unit
+  const Signal* sign = nullptr;  // bit of the same message that makes it negative; nullptr: none
 };
 
 struct Environment {
@@ -51,6 +52,7 @@ struct Picks {
   double seconds_per_unit = 1.0;  // of `time`
   std::vector<Environment> environments;
   double rate_hz = 0.0;
+  std::vector<std::string> remarks;  // for the user, a line each
 };
 
 // Fills `out`. Throws std::exception with one line: errors of the DBC file with file and line; of an option

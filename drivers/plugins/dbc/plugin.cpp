@@ -24,7 +24,7 @@ class Driver {
   Decoder& decoder() { return *decoder_; }
   [[nodiscard]] const Decoder& decoder() const { return *decoder_; }
   Encoder& encoder() { return *encoder_; }
-  [[nodiscard]] const std::vector<std::string>& warnings() const { return picks_.database.warnings; }
+  [[nodiscard]] const std::vector<std::string>& remarks() const { return picks_.remarks; }
 
   void describe(ifog_description& out) const {
     out = {};
@@ -75,7 +75,7 @@ const ifog_driver kTable{
       return plugin::create_or_explain(settings, count, error, error_size,
                                        [&](const plugin::Options& options) {
                                          auto driver = std::make_unique<Driver>(options);
-                                         plugin::explain_warnings(driver->warnings(), error, error_size);
+                                         plugin::explain_warnings(driver->remarks(), error, error_size);
                                          return driver.release();
                                        });
     },

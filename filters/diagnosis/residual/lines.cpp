@@ -182,15 +182,8 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   const Search in{error, start_s, period_s, significance, spectrum};
   for (const std::size_t k : not_near(peaks_of(spectrum, floor, significance))) {
     if (lines.size() >= most) break;
-    SpectralLine line = refine(in, k, std::max(floor[k], noise_near(power, k)));
-    if (line.p_value > significance) continue;
-    std::size_t first = k;
-    std::size_t last = k;
-    const std::size_t close = least_distance(k);
-    while (first > 1 && k - first < close && power[first - 1] > 0.1 * power[k]) --first;
-    while (last + 1 < power.size() && last - k < close && power[last + 1] > 0.1 * power[k]) ++last;
-    line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(spectrum.length) * period_s);
-    lines.push_back(line);
+    const SpectralLine line = refine(in, k, std::max(floor[k], noise_near(power, k)));
+    if (line.p_value <= significance) lines.push_back(line);
   }
   std::ranges::sort(lines, [](const SpectralLine& a, const SpectralLine& b) { return a.ratio > b.ratio; });
   return lines;

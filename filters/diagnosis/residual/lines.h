@@ -21,7 +21,6 @@ struct SpectralLine {
   double ratio = 0.0;      // power / mean of the surrounding noise
   double p_value = 1.0;    // over all frequencies of the record
   double coherence = 0.0;  // 1: constant phase, 0: random; see kCoherent
-  double width_hz = 0.0;   // of the peak, 1 / record length for a line
 };
 
 // A line keeps this share of its power if its quarters are added coherently.

@@ -97,9 +97,9 @@ void describe_peak(const SpectralLine& peak, Unexplained& found) {
   found.kind = "line";
   found.frequency_hz = peak.frequency_hz;
   found.hint = formatted(
-      "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
-      "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
-      peak.frequency_hz, peak.width_hz);
+      "a peak at %.4g Hz that is no line of one frequency and phase: a resonance of the mounting, or a line "
+      "that moves. Log an accelerometer on the mounting and the loop's own signals.",
+      peak.frequency_hz);
 }
 
 // energy: of pieces of `piece` samples. False if there are no bursts, or so many that they are the noise.
@@ -133,15 +133,19 @@ void describe_noise_change(const NoiseChange& change, Unexplained& found) {
       change.times, told_time(change.from_s).c_str(), told_time(change.to_s).c_str());
 }
 
+std::string hint_of(const SlowRest& slow) {
+  return formatted(
+      "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
+      "sensor's own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
+      "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
+      "supply.",
+      100.0 * slow.share, slow.over_s);
+}
+
 void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   if (slow.over_s > 0.0) {
     found.kind = "slow";
-    found.hint = formatted(
-        "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
-        "sensor's own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
-        "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
-        "supply.",
-        100.0 * slow.share, slow.over_s);
+    found.hint = hint_of(slow);
   } else if (found.fraction > 0.05) {
     found.kind = "uncorrelated";
     found.hint = "correlated with nothing that was logged, and with no pattern of its own";
@@ -151,12 +155,13 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   }
 }
 
-// Describes 1 s means, or block means if there are harmonics, which are part of the block means' noise.
+// Describes 1 s means, or block means if there are harmonics, which are part of the block means' noise; single
+// samples if the rest is a peak that such means average out.
 void describe_share(std::span<const double> error, std::span<const double> left, double period_s,
                     const NoiseFit& noise, const BlockGrid& grid, Unexplained& found) {
-  const bool sways = !noise.shape.harmonics.empty();
-  const auto count = std::max<std::size_t>(
-      1, static_cast<std::size_t>(std::floor((sways ? grid.block_s : 1.0) / period_s + 0.5)));
+  const double usual_s = noise.shape.harmonics.empty() ? 1.0 : grid.block_s;
+  const double seen_s = found.frequency_hz * usual_s > 0.5 ? period_s : usual_s;
+  const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(seen_s / period_s + 0.5)));
   found.means_s = static_cast<double>(count) * period_s;
   const double before = variance_of(means_over(error, count)), after = variance_of(means_over(left, count));
   double known = noise.white_variance * grid.block_s / found.means_s;
@@ -174,19 +179,21 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
   const EvenError& longest = longest_of(errors);
   const double period_s = grid.sample_s, start_s = longest.origin.in_s(longest.start_s);
   Unexplained found;
-  describe_share(*longest.before, *longest.after, period_s, noise, grid, found);
   std::vector<SpectralLine> peaks;
   if (!grid.dwells) peaks = find_lines(*longest.after, longest.start_s, period_s, significance);
+  if (!peaks.empty()) describe_peak(peaks.front(), found);
+  describe_share(*longest.before, *longest.after, period_s, noise, grid, found);
+  const SlowRest slow = slow_rest(*longest.after, period_s);
   const double length_s = static_cast<double>(longest.after->size()) * period_s;
   const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
   if (!peaks.empty()) {
-    describe_peak(peaks.front(), found);
     for (const FoundEffect& each : of_samples) {
       const double line_hz = parameter(each.effect, "frequency_hz");
       if (line_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line_hz)))
         found.hint =
-            formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady", line_hz);
+            formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady.", line_hz);
     }
+    if (slow.over_s * found.frequency_hz > 0.5) found.hint += " Besides, " + hint_of(slow);
     return found;
   }
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
@@ -196,7 +203,7 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
   const auto mine = static_cast<std::size_t>(&longest - errors.data());
   const auto change = std::ranges::find(noise_changes, records[mine].name, &NoiseChangeIn::capture);
   if (change == noise_changes.end())
-    describe_slow_rest(slow_rest(*longest.after, period_s), found);
+    describe_slow_rest(slow, found);
   else
     describe_noise_change(change->change, found);
   return found;
