@@ -15,7 +15,6 @@ constexpr double kAdapter_s = 0.02;     // USB adapters collect bytes for 16 ms
 constexpr double kLatest_s = 2.0;       // a delivery later than this is a gap
 constexpr double kStands_s = 1.0;       // a delayed line shows within this time that it drains
 constexpr double kShrinks_s = 0.03;     // by reducing its delay by this
-constexpr double kPaced = 0.75;         // in sample times
 constexpr int kEarly = 8, kStrays = 8;  // consecutive frames; a single damaged stamp or counter has no effect
 constexpr double kClocksApart = 0.01;  // difference of device clock and counter, relative to the time between
 constexpr double kNoSetting_s = 60.0;  // a larger jump of only the clock means it was set
@@ -100,22 +99,20 @@ void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
   // Deliveries of many samples are usual where neither counter nor clock tells what a silence was.
   const double usual_s = now.tells() ? 0.0 : 1.5 * stall_s_;
-  now.silent = std::min(now.quiet_s, now.elapsed_s) > std::max(kSilence_s, usual_s) + 2.0 * period_s;
+  now.silent = now.quiet_s > std::max(kSilence_s, usual_s) + 2.0 * period_s;
   // The first of many samples in one read was delayed by the time of those after it.
-  if (now.silent && frame.at_once > 1 && now.counted)
-    now.elapsed_s = std::max(kSilence_s, now.elapsed_s - (frame.at_once - 1.0) * period_s);
+  if (now.silent && frame.at_once > 1 && now.counted) now.elapsed_s -= (frame.at_once - 1.0) * period_s;
   now.slack_s = slack_s(now.elapsed_s);
 }
 
 // Samples by the counter, after a silence with the number of rollovers nearest to the elapsed time. Other
 // lateness may be a delay.
 std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexcept {
-  const bool round = now.silent || (reopened && !now.timed);
-  const std::uint64_t least = now.ahead > 0 ? now.ahead : round ? modulus_ : 1;
-  if (!now.timed || !(reopened || (now.silent && now.ahead != 1))) return least;
-  const double round_s = pace_.time_s(modulus_);
-  const double rounds = std::round((now.elapsed_s - pace_.time_s(least)) / round_s);
-  return rounds > 0.0 ? least + static_cast<std::uint64_t>(std::min(rounds, 1e12)) * modulus_ : least;
+  double rounds = reopened && !now.timed && now.ahead == 0 ? 1.0 : 0.0;
+  if (now.timed && (reopened || (now.silent && now.ahead != 1)))
+    rounds = std::round((now.elapsed_s - pace_.time_s(now.ahead)) / pace_.time_s(modulus_));
+  const auto more = static_cast<std::uint64_t>(std::clamp(rounds, 0.0, 1e12)) * modulus_;
+  return std::max<std::uint64_t>(now.ahead + more, 1);
 }
 
 // Unwrapped stamp (KVH 1750 after 71 minutes, DBC signals after one): nearest to the elapsed time after a
@@ -125,14 +122,11 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   if (frame.wrap_ns > 0) {
     const double wrap_s = seconds(frame.wrap_ns);
     step_ns = (step_ns % frame.wrap_ns + frame.wrap_ns) % frame.wrap_ns;
-    const std::uint64_t back = modulus_ - now.ahead;
     double near_s = pace_.known() ? pace_.nominal_s() : 0.0;
-    if (now.silent || (!now.counted && now.timed && !delay_))
+    if (now.silent || (!now.counted && now.timed))
       near_s = now.elapsed_s;
     else if (now.counted && now.ahead <= modulus_ / 2)
       near_s = pace_.time_s(now.counted_samples);
-    else if (now.counted && back < RecentFrames::kMost)
-      near_s = -pace_.time_s(back);
     const double rounds = std::clamp(std::round((near_s - seconds(step_ns)) / wrap_s), -1.0, 9e9 / wrap_s);
     step_ns = ns_after(step_ns, static_cast<std::int64_t>(rounds) * frame.wrap_ns);
   }
@@ -151,16 +145,14 @@ bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   if (!now.counted) {
     const bool goes_back = pace_.known() && now.passed_s < 0.0 &&
                            -now.passed_s <= static_cast<double>(RecentFrames::kMost) * pace_.nominal_s();
-    return now.clocked && !frame.reopened && (again ? !ticks_.has_room() : goes_back);
+    return now.clocked && (again ? !ticks_.has_room() : goes_back);
   }
   if (now.ahead <= 1) return now.ahead == 0 && again;
-  const std::uint64_t most = std::min<std::uint64_t>(RecentFrames::kMost, modulus_ / 2);
-  if (modulus_ - now.ahead > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
-  const Had was = recent_.had(modulus_ - now.ahead, now.digest);
-  const double ahead_s = pace_.time_s(now.ahead);
-  const bool usual = now.timed && !now.contradicts(ahead_s);
+  const std::uint64_t back = modulus_ - now.ahead, most = std::min(recent_.size(), modulus_ / 2);
+  if (back > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
   // Frames of a coarse sensor at rest are equal, and none of them comes as late as the next after a loss.
-  return (was == Had::same && now.quiet_s < 0.5 * ahead_s) || (was == Had::no && !usual);
+  const Had was = recent_.had(back, now.digest);
+  return was == Had::no || (was == Had::same && now.quiet_s < 0.5 * pace_.time_s(now.ahead));
 }
 
 // Restart after the elapsed time, also if that is unknown.
@@ -212,8 +204,8 @@ bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcep
     step.ambiguous = step.samples > 1 && !now.timed && (!now.counted || step.samples > modulus_);
     return true;
   }
-  ticks_.jumped();
-  if (now.silent || frame.reopened || (!now.counted && (!now.timed || !pace_.known()))) {
+  if (now.silent || frame.reopened || (now.counted && now.ahead != 1) ||
+      (!now.counted && (!now.timed || !pace_.known()))) {
     restart(now, step);
     step.time_ns = frame.stamp_ns;
     return true;
@@ -231,10 +223,7 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s - kPrompt_s;
   const bool wrong = step.samples > 1 && (never_timed || short_of || now.contradicts(claimed_s));
   step.dt_s = static_cast<double>(step.samples) * pace_.nominal_s();
-  if (wrong && now.ahead == 1) {  // possibly buffered on the line while nobody read it
-    step.samples = 1;
-    step.dt_s = pace_.nominal_s();
-  } else if (wrong) {
+  if (wrong) {
     // Devices do not restart without a silence: one damaged counter is ignored, a few consecutive ones are
     // not.
     step.out_of_turn = !now.silent && !never_timed && !frame.reopened && strays_ < kStrays;
@@ -283,20 +272,15 @@ void Timeline::meet_arrival(const Frame& frame, const Look& now, Step& step) noe
 // A late frame counts as delayed until the delay drains or persists.
 void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, Step& step) noexcept {
   const bool shown = now.counted && now.ahead != 1;
-  if ((now.silent && late_s > kSilence_s + scatter_s_) ||
-      (shown && !delay_ && late_s > kPrompt_s + now.slack_s))
-    delay_ = {shown, late_s, late_s, frame.arrival_ns};
+  if (now.silent && late_s > kSilence_s + scatter_s_) delay_ = {shown, late_s, late_s, frame.arrival_ns};
   if (!delay_) return;
   if (late_s < kPrompt_s + scatter_s_) {
     stall_s_ = std::clamp(delay_->most_late_s, stall_s_, kLatest_s);
     return delay_.reset();
   }
-  // A device with neither counter nor clock is at its pace if a frame that is read alone comes a period after
-  // the one before it.
-  const bool paced = !now.tells() && alone(frame) && !now.silent && now.quiet_s > kPaced * pace_.period_s();
   if (late_s < delay_->least_late_s - kShrinks_s)
     *delay_ = {delay_->shown, delay_->most_late_s, late_s, frame.arrival_ns};
-  if (paced || seconds(ns_between(delay_->least_ns, frame.arrival_ns)) >= kStands_s)
+  if (seconds(ns_between(delay_->least_ns, frame.arrival_ns)) >= kStands_s)
     end_delay(frame, now, late_s, step);
 }
 
@@ -307,8 +291,7 @@ void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Ste
   const bool whole = now.counted && lost >= 1.0 && std::abs(lost * round_s - late_s) <= slack;
   const double usual_s = now.clocked ? kLatest_s : now.counted ? std::min(round_s - slack, kLatest_s) : 0.0;
   // Stamps of a log are of a wall clock, which was set if the device's counter continues.
-  const bool one_by_one = !delay_->shown && !(whole && late_s < kNoSetting_s);
-  const bool set = frame.recorded && (now.clocked ? !delay_->shown : now.counted && one_by_one);
+  const bool set = frame.recorded && now.tells() && !delay_->shown;
   delay_.reset();
   due_ns_ = frame.arrival_ns;
   step.clock_moved = late_s <= usual_s || set || !pace_.known();
@@ -344,7 +327,7 @@ void Timeline::learn(const Frame& frame, const Look& now, const Step& step) noex
     each_s_ = step.dt_s / static_cast<double>(std::max<std::uint64_t>(now.ahead, 1));
   const bool late = now.silent || delay_;
   if (frame.arrival_ns <= 0 || seen_ns_ <= 0 || step.gap || (late && now.tells())) return pace_.interrupted();
-  const double since_s = std::max(0.0, seconds(ns_between(seen_ns_, frame.arrival_ns)));
+  const double since_s = seconds(ns_between(seen_ns_, frame.arrival_ns));
   pace_.learn(since_s, step.dt_s, step.samples, now.timed && !late);
 }
 

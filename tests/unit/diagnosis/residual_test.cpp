@@ -132,6 +132,12 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
     humming[i] += 0.2 * std::sin(2.0 * M_PI * 3.3 * kPeriod * static_cast<double>(i));
   EXPECT_EQ(of(humming).kind, "line");
   EXPECT_NEAR(of(humming).frequency_hz, 3.3, 1e-4);
+  // An MPU6050 at rest (sunsided/sensor-fusion): the means drift, and a line that they average out is no cause.
+  for (std::size_t i = 0; i < humming.size(); ++i) humming[i] += drifting[i] - noise[i];
+  const Unexplained both = of(humming);
+  EXPECT_EQ(both.kind, "line");
+  EXPECT_EQ(both.means_s, kPeriod);
+  EXPECT_NE(both.hint.find("Besides, slow drift"), std::string::npos) << both.hint;
 }
 
 // Stamps that scatter about an even clock are set even; steps that are of different lengths stay.

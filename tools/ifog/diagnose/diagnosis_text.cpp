@@ -113,8 +113,10 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   if (diagnosis.unexplained.kind == "nothing")
     report += "\nNothing more is found in the rest.\n";
   else
-    report += fmt::format("\nUnexplained: {} of the variance of {:.3g} s means",
-                          percent(diagnosis.unexplained.fraction), diagnosis.unexplained.means_s) +
+    report += fmt::format("\nUnexplained: {} of the variance of {}", percent(diagnosis.unexplained.fraction),
+                          diagnosis.unexplained.means_s * diagnosis.sample_rate_hz < 1.5
+                              ? "single samples"
+                              : fmt::format("{:.3g} s means", diagnosis.unexplained.means_s)) +
               " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
     report += fmt::format("\nNext capture, bias averaged over {:.3g} s at rest: heading error ({})",
