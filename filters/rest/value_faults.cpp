@@ -78,7 +78,8 @@ void find_clipped(const std::vector<double>& sorted, std::vector<ValueFault>& fo
     if (100.0 * here < samples || here < 3.0 * std::max(there, average)) return;
     found.push_back({"clipped", six(100.0 * here / samples) + " % of the samples are at the " + which +
                                     " value, " + six(extreme.value / kDegree) +
-                                    " °/s: the sensor or its number format is at full scale"});
+                                    " °/s: the sensor or its number format is at full scale, and the figures "
+                                    "are of what it cut off"});
   };
   clipped(values.back(), values[values.size() - 2], "largest");
   clipped(values.front(), values[1], "smallest");

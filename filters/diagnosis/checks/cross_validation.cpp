@@ -129,16 +129,19 @@ bool step_persists(const BlockData& data, const FittedModel& model) {
     if (model.effects[i].form == Form::kStep) taken[column_of(grid, i) - 1] = 0.0;
   const BlockRange& record = grid.records[step.record];
   const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
-  std::array<std::vector<double>, 2> level;  // before and after, in order of time
-  for (std::size_t b = record.first; b < record.end; ++b) {
-    const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
-    if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;
+  // Before and after, from the nearest block on: a hole may lie between them.
+  std::array<std::vector<double>, 2> level;
+  const auto look_at = [&](std::size_t b) {
     const auto row = static_cast<Eigen::Index>(b);
-    level[grid.time_s[b] > step.time_s ? 1 : 0].push_back(columns(row, 0) -
-                                                          columns.row(row).segment(1, last - 1).dot(taken));
-  }
+    std::vector<double>& side = level[grid.time_s[b] > step.time_s ? 1 : 0];
+    if (grid.valid[b] && std::abs(grid.time_s[b] - step.time_s) >= 3.0 * grid.block_s && side.size() < window)
+      side.push_back(columns(row, 0) - columns.row(row).segment(1, last - 1).dot(taken));
+  };
+  for (std::size_t b = record.end; b > record.first; --b)
+    if (grid.time_s[b - 1] <= step.time_s) look_at(b - 1);
+  for (std::size_t b = record.first; b < record.end; ++b)
+    if (grid.time_s[b] > step.time_s) look_at(b);
   if (level[0].size() < 8 || level[1].size() < 8) return false;
-  std::reverse(level[0].begin(), level[0].end());
   const auto change = [&](bool far) {
     std::array<double, 2> mean{};
     for (std::size_t side = 0; side < 2; ++side) {

@@ -44,6 +44,11 @@ std::string capture_that_separates(const BlockData& data, const Candidate& one, 
   const bool timed = one.channel == Candidate::kNone || other.channel == Candidate::kNone;
   const std::size_t channel = one.channel == Candidate::kNone ? other.channel : one.channel;
   const std::string name = channel == Candidate::kNone ? "" : data.channels[channel].name;
+  if (!name.empty() && other.form == Form::kStep) {
+    const double at_s = data.grid.origin_of(other.record).in_s(other.time_s);
+    return "a capture in which " + name + " changes while the gyro stays on and untouched, not only at " +
+           told_time(at_s) + " s";
+  }
   if (timed && !name.empty()) {
     return "a capture in which " + name +
            " goes up and comes down again, so that it does not run with the time";

@@ -306,6 +306,23 @@ class EffectSearch {
       if (seen.size() > 5) break;
       result.alternatives.push_back({i, each.candidate, each.correlation, loss});
     }
+    find_step_instead(result, i, rest);
+  }
+
+  // A single event may be both: what the channel did there, or a jump, as of a gyro that is switched off and on.
+  void find_step_instead(SearchResult& result, std::size_t i, const FittedModel& rest) const {
+    if (data_.grid.dwells || model_.effects[i].form == Form::kStep) return;
+    const std::vector<Scored> steps = scan_.steps(rest);
+    if (steps.empty()) return;
+    const Candidate& step = std::ranges::max(steps, {}, &Scored::ratio).candidate;
+    std::vector<Candidate> instead = rest.effects;
+    instead.push_back(step);
+    const FittedModel model = fitted(std::move(instead), model_.noise.shape);
+    const double loss = 2.0 * (model_.noise.log_likelihood - model.noise.log_likelihood);
+    if (loss > kLikeness || !step_persists(data_, model)) return;
+    const NoiseShape& shape = model_.noise.shape;
+    result.alternatives.push_back(
+        {i, step, scan_.correlation(rest.effects, model_.effects[i], step, shape), loss});
   }
 
   const BlockData& data_;

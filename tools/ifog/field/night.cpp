@@ -278,7 +278,11 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   };
   std::erase_if(found, [&](const AxisDiagnosis& axis) { return !gains(axis); });
   if (found.empty())
-    return "found " + traced + ", without a gain on held-out data" +
+    return "found " + traced +
+           (tried.empty() || verdict_of(tried) != PromiseVerdict::open
+                ? ", without a gain on held-out data"
+                : ", but " + in_hours(tried.front().kept.seconds) +
+                      " held out are too short to tell if it holds") +
            (tried.empty() ? "" : ": " + gain_text(tried));
   Model model = with();
   // If the model has no filter, the daemon learns the noise, and this stays so.
