@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -29,6 +31,23 @@ double mean_around(std::span<const double> rate, std::size_t end, const Stretch&
   double sum = 0.0;
   for (std::size_t i = 0; i < after.lost; ++i) sum += rate[end - 1 - i] + rate[after.begin + i];
   return sum / (2.0 * static_cast<double>(after.lost));
+}
+
+// True if the levels on both sides of a hole differ by more than noise does, as after a gyro was switched off and on.
+// hadamard: m σ²(m) at 1, 2, 4, … samples; the m with the least variance is used.
+bool steps_over(std::span<const double> rate, const Stretch& before, const Stretch& after,
+                std::span<const double> hadamard) {
+  constexpr double kSure = 50.0;  // times that variance; the difference of two means of white noise has 2
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t m = 1;
+  for (std::size_t k = 0; k < hadamard.size() && std::size_t{1} << k <= std::min(before.size(), after.size());
+       ++k)
+    if (const double variance = std::ldexp(hadamard[k], -static_cast<int>(k)); variance < least)
+      least = variance, m = std::size_t{1} << k;
+  double step = 0.0;
+  for (std::size_t i = 0; i < m; ++i) step += rate[after.begin + i] - rate[before.end - 1 - i];
+  step /= static_cast<double>(m);
+  return step * step > kSure * least;
 }
 
 // Of the white part of the noise.
@@ -57,6 +76,8 @@ std::vector<Stretch> AngleSum::negligible(std::span<const double> rate_radps,
   const double most = kMost * static_cast<double>(sum.samples());
   // A line has no error where h is a multiple of its period; so the largest one up to h counts.
   std::vector<double> variance = levels_of(sum, Deviation::kHadamard);
+  std::erase_if(holes,
+                [&](std::size_t i) { return steps_over(rate_radps, apart[i - 1], apart[i], variance); });
   for (std::size_t k = 0; k < variance.size(); ++k)
     variance[k] =
         std::max(1.5 * static_cast<double>(std::size_t{1} << k) * variance[k], k > 0 ? variance[k - 1] : 0.0);

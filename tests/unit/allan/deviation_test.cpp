@@ -104,6 +104,19 @@ TEST(Deviation, StretchesNeverMixAcrossAHole) {
   EXPECT_TRUE(std::isnan(points[3].variance));
 }
 
+// Two recordings that were joined, or a gyro switched off and on (an MPU6050 whose bias stepped by 0.08 °/s): the step
+// is at a hole of a second and is no random walk.
+TEST(Deviation, NoAverageReachesAcrossAHoleAtWhichTheRateSteps) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  std::vector<double> rate(60000);
+  for (double& value : rate) value = noise(engine);
+  const std::vector<ifog::Stretch> stretches{{0, 30000, 0}, {30100, 60000, 100}};
+  EXPECT_EQ(ifog::AngleSum(rate, stretches).parts().size(), 1U);
+  for (std::size_t i = 30100; i < rate.size(); ++i) rate[i] += 0.5;
+  EXPECT_EQ(ifog::AngleSum(rate, stretches).parts().size(), 2U);
+}
+
 TEST(Deviation, MatchesThePublishedFiguresOfARealGyro) {
   const std::string path = IFOG_SHARED_DATA "/adis16405_imu1.csv.gz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the measured capture " << path;
