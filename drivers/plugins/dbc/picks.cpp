@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/units/units.h"
@@ -116,14 +117,20 @@ class Reader {
  private:
   std::vector<Pick> find(std::string_view name) const { return find_signals(out_.database, name); }
 
-  std::string known_signals() const {
+  // written: a name that is none of them.
+  std::string known_signals(std::string_view written = "") const {
     constexpr std::size_t kShown = 12;
+    const bool with_message = written.find('.') != std::string_view::npos;
     std::string list;
+    std::vector<std::string> names;
     std::size_t n = 0;
     for (const Message& m : out_.database.messages)
-      for (const Signal& s : m.signals)
+      for (const Signal& s : m.signals) {
+        names.push_back(with_message ? shown(Pick{&m, &s}) : printable(display_name(s), kLongestQuote));
         if (n++ < kShown) list += (list.empty() ? "" : ", ") + shown(Pick{&m, &s});
+      }
     list += n > kShown ? ", … (" + std::to_string(n) + " in all)" : "";
+    list += did_you_mean(written, names);
     // It may be on a line that could not be parsed.
     const std::vector<std::string>& bad = out_.database.warnings;
     if (!bad.empty())
@@ -133,7 +140,7 @@ class Reader {
 
   Pick one(std::string_view key, std::string_view name) const {
     const std::vector<Pick> found = find(name);
-    if (found.empty()) options_.fail(key, "a signal of " + out_.database.file + ": " + known_signals());
+    if (found.empty()) options_.fail(key, "a signal of " + out_.database.file + ": " + known_signals(name));
     if (found.size() > 1)
       options_.fail(key, "one signal, with its message before a dot; " + in_quotes(name) + " may be " +
                              shown(found[0]) + " or " + shown(found[1]));

@@ -154,6 +154,8 @@ TEST_F(DbcText, ASignBitMakesTheRateNegative) {
     }
     ifog::DriverInstance as_sent = driver(text, {{"signal", name}, {"sign", "none"}});
     EXPECT_TRUE(as_sent.warnings().empty());
+    const std::string misspelt = refusal(text, {{"signal", std::string(name).substr(1)}});
+    EXPECT_NE(misspelt.find("did you mean '" + std::string(name) + "'?"), std::string::npos) << misspelt;
     EXPECT_EQ(decode(as_sent, frames)[1].value[0], samples[0].value[0]);
   }
 }
