@@ -10,8 +10,8 @@
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -15,10 +15,9 @@
 #include "tools/ifog/captures/lcm/lcm_listener.h"
 #include "tools/ifog/captures/lcm/message_archive.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -9,7 +9,7 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"

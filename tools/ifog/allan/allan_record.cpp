@@ -16,8 +16,7 @@
 #include "filters/units/told_time.h"
 #include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/naming.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

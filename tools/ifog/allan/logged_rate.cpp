@@ -17,7 +17,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {

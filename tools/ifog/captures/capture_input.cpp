@@ -16,12 +16,10 @@
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
-#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

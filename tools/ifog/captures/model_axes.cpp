@@ -10,7 +10,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

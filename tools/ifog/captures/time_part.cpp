@@ -6,9 +6,8 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {

@@ -12,7 +12,7 @@
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/field/field.h"
 
 namespace ifog::tools {

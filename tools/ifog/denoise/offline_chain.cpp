@@ -14,8 +14,8 @@
 #include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/series/median_step.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/chain_run.h"
 

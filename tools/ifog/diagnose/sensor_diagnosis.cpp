@@ -28,8 +28,8 @@
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {

@@ -9,7 +9,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {

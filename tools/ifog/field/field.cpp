@@ -19,8 +19,8 @@
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 

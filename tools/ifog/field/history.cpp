@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "daemon/state/state_folder.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

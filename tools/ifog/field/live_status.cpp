@@ -10,8 +10,8 @@
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "daemon/state/state_folder.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/listed_fields.h"
+#include "tools/ifog/console/json.h"
 
 namespace ifog::tools {
 

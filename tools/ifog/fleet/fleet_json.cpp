@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/fleet/fleet_json.h"
 
-#include "tools/ifog/console/listed_fields.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/fleet/results.h"
 
 namespace ifog::tools {

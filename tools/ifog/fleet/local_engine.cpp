@@ -10,8 +10,8 @@
 
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/process.h"

@@ -19,9 +19,9 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 

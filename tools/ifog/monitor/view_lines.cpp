@@ -11,7 +11,6 @@
 #include "filters/units/field_units.h"
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
-#include "tools/ifog/console/hertz.h"
 #include "tools/ifog/field/status_text.h"
 #include "tools/ifog/monitor/spark_line.h"
 #include "tools/report/text.h"

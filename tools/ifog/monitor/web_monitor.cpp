@@ -8,7 +8,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "msgs/axis_name.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/monitor/view_lines.h"
 
 namespace ifog::tools {

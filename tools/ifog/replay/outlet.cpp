@@ -8,8 +8,8 @@
 #include <ctime>
 #include <system_error>
 
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {

@@ -21,9 +21,8 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/network/ip_socket.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/columns/column_names.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 

@@ -14,8 +14,7 @@
 #include "drivers/system/unnamed_file.h"
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/naming.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

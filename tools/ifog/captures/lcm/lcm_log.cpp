@@ -23,8 +23,8 @@
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_loss.h"
 #include "tools/ifog/captures/lcm/peer_reader.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -8,7 +8,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {

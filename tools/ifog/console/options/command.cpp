@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -11,7 +13,9 @@
 #include <string_view>
 #include <type_traits>
 
-#include "tools/ifog/console/options/checked_values.h"
+#include "drivers/ifog/decimal.h"
+#include "drivers/ifog/nearest.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
 
@@ -27,6 +31,67 @@ constexpr std::array<std::pair<std::string_view, const char*>, 9> kTexts = {{{"-
                                                                              {"--to", "WHERE"},
                                                                              {"NAME", "NAME"},
                                                                              {"sensor", "NAME"}}};
+
+// Parses the whole text as a T; a leading plus sign is allowed.
+template <typename T>
+std::optional<T> integer_in(std::string_view digits) {
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = read_decimal(text.data(), end, value);
+  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::int64_t> whole_in(const std::string& text) { return integer_in<std::int64_t>(text); }
+
+enum class ValueKind { text, number, whole, count };  // count: whole, 0 or more
+
+struct ValueRule {
+  ValueKind kind;
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  bool without_least = false;
+  std::string range{};  // "more than 0", "1 to 1000"; appended to the help
+  std::vector<std::string> choices{};
+  Complaint check{};  // before the other rules, because its message is more specific
+
+  [[nodiscard]] bool fits(const std::string& value) const {
+    if (kind == ValueKind::text)
+      return choices.empty() ? !value.empty() : std::ranges::count(choices, value) > 0;
+    // Whole numbers have 64 bits, signed or unsigned.
+    const bool whole = integer_in<std::uint64_t>(value) || (kind == ValueKind::whole && whole_in(value));
+    const std::optional<double> number = number_in(value);
+    return (kind == ValueKind::number || whole) && number && *number <= most &&
+           (without_least ? *number > least : *number >= least);
+  }
+
+  // "" or "is 'VALUE', expected EXPECTED". word: the value's name in the help.
+  [[nodiscard]] std::string complaint(const std::string& value, const std::string& word) const {
+    if (check)
+      if (std::string wrong = check(value); !wrong.empty()) return wrong;
+    if (fits(value)) return "";
+    std::string expected = word;  // for an empty script variable: --model "$MODEL"
+    if (!choices.empty()) expected = ifog::one_of(value, choices);
+    if (kind != ValueKind::text) {
+      expected = kind == ValueKind::number ? "a number" : "a whole number";
+      if (const std::string words = range.empty() && kind == ValueKind::count ? "0 or more" : range;
+          !words.empty())
+        expected += " " + words;
+    }
+    return "is " + in_quotes(value) + ", expected " + expected;
+  }
+};
+
+namespace {
 
 template <typename T>
 struct ValueOf {
@@ -52,7 +117,7 @@ Option ruled(CLI::Option* option) {
                     : kind != ValueKind::text ? "N"
                     : text != kTexts.end()    ? text->second
                                               : "FILE");
-  auto rule = std::make_shared<ValueRule>(kind);
+  auto rule = std::make_shared<ValueRule>(ValueRule{kind});
   option->check(
       [rule, option](const std::string& value) { return rule->complaint(value, option->get_type_name()); });
   return Option(*option, std::move(rule));
@@ -83,7 +148,10 @@ Option Option::delimiter(char between) const { return Option(*option_->delimiter
 Option Option::one_value_each() const { return Option(*option_->allow_extra_args(false), rule_); }
 
 Option Option::ranged(double least, double most, bool without_least, const std::string& words) const {
-  rule_->range(least, most, without_least, words);
+  rule_->least = least;
+  rule_->most = most;
+  rule_->without_least = without_least;
+  rule_->range = words;
   option_->description(option_->get_description() + "; " + words);
   return *this;
 }
@@ -105,14 +173,14 @@ Option Option::within(int least, int most) const {
 }
 
 Option Option::one_of(const std::vector<std::string>& words) const {
-  rule_->one_of(words);
+  rule_->choices = words;
   std::string shown;
   for (const std::string& word : words) shown += (shown.empty() ? "" : "|") + word;
   return type_name(shown);
 }
 
 Option Option::check(Complaint complaint) const {
-  rule_->check(std::move(complaint));
+  rule_->check = std::move(complaint);
   return *this;
 }
 

@@ -3,8 +3,10 @@
 // headers contain the whole parser.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +21,14 @@ namespace ifog::tools {
 // Returns "" or the error in a value.
 using Complaint = std::function<std::string(const std::string& value)>;
 
-// Rule for an option's values; see checked_values.h.
-class ValueRule;
+// Decimal and finite, as in drivers/ifog/decimal.h; otherwise nullopt.
+std::optional<double> number_in(const std::string& text);
+
+// Whole and within 64 bits, signed; otherwise nullopt. (The parser would clamp larger numbers.)
+std::optional<std::int64_t> whole_in(const std::string& text);
+
+// Rule for the values of one option, besides the type of its variable.
+struct ValueRule;
 
 // Handle of an option; valid as long as the command line. Help and error messages come from one rule.
 class Option {

@@ -11,7 +11,6 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
-#include "tools/ifog/console/options/checked_values.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {

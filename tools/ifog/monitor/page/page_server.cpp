@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "page_source.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {
