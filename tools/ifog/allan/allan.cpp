@@ -60,41 +60,33 @@ void add_allan(const Command& program) {
   const Command command = program.add_subcommand(
       "allan",
       "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");
-  command.add_option("capture", a->captures, "Captures, or files written by ifog denoise").required();
+  command.add_option("capture", a->captures, "Captures, or files written by ifog denoise",
+                     {.required = true});
   a->input.add_to(command);
   command.add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
-  command
-      .add_option("--tau", a->options.tau_s,
-                  "Averaging times in s, separated by commas; log-spaced otherwise")
-      .delimiter(',')
-      .positive();
-  command.add_option("--per-decade", a->options.per_decade, "Points per decade of averaging time")
-      .within(1, 1000)
-      .shows_default();
-  command.add_option("--confidence", a->options.confidence, "Of the intervals")
-      .within(0.01, 0.9999)
-      .shows_default();
-  command.add_option("--estimator", a->estimator, "overlapping, modified or hadamard")
-      .one_of({"overlapping", "modified", "hadamard"})
-      .shows_default();
-  command
-      .add_option("--gaps", a->gaps,
-                  "part: analyse the stretches between holes, of which those are filled that change no "
-                  "variance by more than 2 %; refuse: any hole is an error")
-      .one_of({"part", "refuse"})
-      .shows_default();
-  command
-      .add_option("--moving", a->moving,
-                  "leave-out: analyse the parts at rest; keep: all of it, as if it had not moved")
-      .one_of({"leave-out", "keep"})
-      .shows_default();
+  command.add_option("--tau", a->options.tau_s,
+                     "Averaging times in s, separated by commas; log-spaced otherwise",
+                     {.delimiter = ',', .range = positive()});
+  command.add_option("--per-decade", a->options.per_decade, "Points per decade of averaging time",
+                     {.shows_default = true, .range = within(1, 1000)});
+  command.add_option("--confidence", a->options.confidence, "Of the intervals",
+                     {.shows_default = true, .range = within(0.01, 0.9999)});
+  command.add_option("--estimator", a->estimator, "overlapping, modified or hadamard",
+                     {.shows_default = true, .choices = {"overlapping", "modified", "hadamard"}});
+  command.add_option("--gaps", a->gaps,
+                     "part: analyse the stretches between holes, of which those are filled that change no "
+                     "variance by more than 2 %; refuse: any hole is an error",
+                     {.shows_default = true, .choices = {"part", "refuse"}});
+  command.add_option("--moving", a->moving,
+                     "leave-out: analyse the parts at rest; keep: all of it, as if it had not moved",
+                     {.shows_default = true, .choices = {"leave-out", "keep"}});
   command.add_flag("--long", a->options.long_tau,
                    "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
   command.add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
   a->options.part.add_to(command);
   command.add_option("--json", a->json, "Write the analysis here, in SI");
-  command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
-      .check(report::wrong_picture_name);
+  command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)",
+                     {.check = report::wrong_picture_name});
   command.callback([a] { run_allan(*a); });
 }
 

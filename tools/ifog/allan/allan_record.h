@@ -3,14 +3,18 @@
 // picture.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise/noise_coefficients.h"
+#include "filters/allan/stretches.h"
 #include "filters/allan/theo1.h"
+#include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
@@ -62,6 +66,37 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
                                        const AllanOptions& options);
 // True if the column is analysed.
 bool allan_wants(const std::string& column);
+
+// The part of a capture that is analysed, with the properties that all of its rates share.
+struct AnalysedPart {
+  const std::string& capture;  // its file
+  const LongTable& table;
+  TimePart::Rows rows;             // in the table
+  std::span<const double> time_s;  // of these rows, since the table's origin
+  SampleClock clock;
+  Rest rest = {};
+  std::string slow_turns = {};  // note about turns that remain; "" if none
+
+  // For messages; `row` counts in the part.
+  [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s[row]); }
+  // "file:line", or the sample's number if the file is not text.
+  [[nodiscard]] std::string place(std::size_t row) const;
+};
+
+// A rate as logged.
+struct LoggedRate {
+  const AnalysedPart& of;
+  const LongColumn& column;
+  std::string signal, axis;           // as in AllanRecord
+  std::span<const double> rate = {};  // in the part's rows
+
+  [[nodiscard]] std::string name() const { return axis.empty() ? signal : signal + "_" + axis; }
+};
+
+// Deviations, noise terms and changes of the noise, at rest. Throws std::runtime_error with one line.
+AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptions& options);
+
+std::string six_digits(double value);
 
 nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
 void print_allan(const AllanRecord& record, const AllanOptions& options);

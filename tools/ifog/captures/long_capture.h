@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture of any length, read once in blocks. Long columns are mapped from files.
+// A capture of any length, read once in blocks, and its rates corrected by a model. Long columns are mapped
+// from files.
 #pragma once
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
+#include "filters/model_file/model_axes.h"
 #include "filters/series/samples.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
@@ -40,5 +43,19 @@ class LongCapture {
   std::vector<Samples> corrected_;
   CaptureView view_;  // of table_
 };
+
+// Warns on standard error if effects without an axis, from a sensor with one axis, apply to each of several.
+// path: of the model.
+void tell_model_of_one_axis(const Model& model, const std::string& path,
+                            const std::vector<std::string>& axes);
+
+// The model without the effects of dropped axes and those that depend on their rates; prints the latter. The
+// rest is unchanged.
+[[nodiscard]] Model without_axes(Model model, const std::vector<std::string>& axes);
+
+// Rates minus the model's effects, by axis, with the code that the daemon uses. Throws std::runtime_error
+// with one line if the capture lacks a channel. Without CaptureView::since_power_up_s a warm-up is not
+// corrected.
+[[nodiscard]] std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& model);
 
 }  // namespace ifog::tools

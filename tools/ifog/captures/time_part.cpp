@@ -38,7 +38,7 @@ void TimePart::add_to(const Command& command, const std::string& of_from, const 
       static_cast<SaidTime&>(bound) = *said;
       bound.text = text;
     };
-    command.add_taken<std::string>(name, take, help).type_name("TIME");
+    command.add_taken<std::string>(name, take, help, {.type = "TIME"});
   };
   add("--from", from, of_from);
   add("--to", to, of_to);

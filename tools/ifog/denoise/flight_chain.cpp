@@ -6,7 +6,7 @@
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/denoise/chain_run.h"
+#include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 
 namespace ifog::tools {
@@ -16,19 +16,19 @@ namespace {
 class FlightChain {
  public:
   FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
-              bool fixed, const OfflineSink& sink)
+              bool fixed, DenoisedRows& rows)
       : flight_(flight),
         driver_(driver),
         settings_(settings),
         fixed_(fixed),
-        sink_(sink),
+        rows_(rows),
         first_(settings_()),
         now_(chain_settings(first_)),
         chain_(now_, first_),
-        times_(driver_.description(), sink_),
+        times_(driver_.description(), rows_),
         runs_{flight.header().run, flight.header().settings},
         missed_{!begins_a_run(flight.header()), {}} {
-    sink_.begin(now_.axes);
+    rows_.begin(now_.axes, first_);
   }
 
   void take(const RecordedSample& recorded) {
@@ -47,7 +47,7 @@ class FlightChain {
     if (increment == nullptr) return;
     missed_.sample(times_.now_s());
     merged_.sample(times_.now_s());
-    chain_.count(sink_.sample(times_.now_s(), *increment, out_));
+    chain_.count(rows_.add(times_.now_s(), *increment, out_));
   }
 
   void discontinuity() {
@@ -127,7 +127,7 @@ class FlightChain {
   DriverInstance& driver_;
   const std::function<OfflineSettings()>& settings_;
   bool fixed_;
-  const OfflineSink& sink_;
+  DenoisedRows& rows_;
   std::vector<std::size_t> recorded_at_;
   OfflineSettings first_;
   ChainSettings now_;
@@ -144,8 +144,8 @@ class FlightChain {
 
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
-                             const OfflineSink& sink) {
-  FlightChain chain(flight, driver, settings, fixed, sink);
+                             DenoisedRows& rows) {
+  FlightChain chain(flight, driver, settings, fixed, rows);
   const RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
                                 [&] { chain.discontinuity(); }, [&] { chain.missing(); },
                                 [&](const FlightHeader& header) { chain.file(header); },

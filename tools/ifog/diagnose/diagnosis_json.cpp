@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/diagnose/axis_diagnosis.h"
+#include "tools/ifog/diagnose/sensor_diagnosis.h"
 
 #include "filters/effects/form.h"
 #include "tools/report/coefficients.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/diagnose/axis_diagnosis.h"
+#include "tools/ifog/diagnose/sensor_diagnosis.h"
 
 #include <fmt/core.h>
 
@@ -8,7 +8,6 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/report/coefficients.h"
-#include "tools/report/pages/account.h"
 #include "tools/report/pages/words.h"
 
 namespace ifog::tools {

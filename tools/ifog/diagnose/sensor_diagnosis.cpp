@@ -162,11 +162,9 @@ void AxesToDiagnose::add_earth_to(const Command& command) {
   command.add_flag("--earth", options.subtract_earth_rate,
                    "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
                    "otherwise it is shown");
-  command
-      .add_taken<double>(
-          "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
-          "of the captures, degrees: bounds what can be the Earth's rate")
-      .within(-90.0, 90.0);
+  command.add_taken<double>(
+      "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
+      "of the captures, degrees: bounds what can be the Earth's rate", {.range = within(-90.0, 90.0)});
 }
 
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,

@@ -27,6 +27,12 @@ void fields(Io& io, T& of) {
   io("changes", of.changes);
 }
 
+constexpr const char* kNightSchema = "ifog.night/1";
+
+std::string path_of(const std::string& state, const std::string& sensor) {
+  return (std::filesystem::path(state) / (sensor + ".night.json")).string();
+}
+
 }  // namespace
 
 template <typename Io, Is<ModelChange> T>
@@ -98,6 +104,25 @@ std::string History::path() const { return (fs::path(state_) / (sensor_ + ".hist
 std::string History::kept_path(const ModelName& name) const {
   return (fs::path(state_) / (sensor_ + ".kept-" + fs::path(name.identity).filename().string() + ".toml"))
       .string();
+}
+
+template <typename Io, Is<Bookmark> T>
+void fields(Io& io, T& of) {
+  io("sensor", of.sensor);
+  io("until", of.until);
+  io("when", of.when);
+  io("said", of.said);
+}
+
+std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
+  const std::string path = path_of(state, sensor);
+  const std::optional<nlohmann::json> file = read_state_json(path, kNightSchema);
+  if (!file) return std::nullopt;
+  return with_keys(path, [&]() -> std::optional<Bookmark> { return from_json<Bookmark>(*file); });
+}
+
+void write_bookmark(const std::string& state, const Bookmark& bookmark) {
+  write_state_json(path_of(state, bookmark.sensor), kNightSchema, bookmark);
 }
 
 }  // namespace ifog::tools

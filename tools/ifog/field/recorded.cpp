@@ -13,7 +13,7 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/model_axes.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
 

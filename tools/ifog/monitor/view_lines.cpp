@@ -12,13 +12,40 @@
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/field/status_text.h"
-#include "tools/ifog/monitor/spark_line.h"
 #include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kLeastWidth = 40;
+
+// A line of block characters with eight heights, scaled from the least to the greatest value.
+struct SparkLine {
+  std::string text;
+  double span;  // greatest minus least value; NaN without values
+};
+
+// The last `width` of `values`; a blank for NaN.
+SparkLine spark_line(const std::vector<double>& values, std::size_t width) {
+  constexpr std::array<const char*, 8> kHeights{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  const std::size_t skip = values.size() > width ? values.size() - width : 0;
+  double least = std::numeric_limits<double>::quiet_NaN(), greatest = least;
+  for (std::size_t i = skip; i < values.size(); ++i)
+    if (std::isfinite(values[i])) {
+      least = std::fmin(least, values[i]);
+      greatest = std::fmax(greatest, values[i]);
+    }
+  std::string out;
+  for (std::size_t i = skip; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      out += ' ';
+      continue;
+    }
+    const double part = greatest > least ? (values[i] - least) / (greatest - least) : 0.5;
+    out += kHeights[std::min<std::size_t>(7, static_cast<std::size_t>(part * 8.0))];
+  }
+  return {out, greatest - least};
+}
 
 std::string n(std::int64_t count) { return std::to_string(count); }
 
