@@ -2,7 +2,6 @@
 // ifog fleet: diagnoses all gyros of a type, on this computer or on a cluster; then estimates the type's
 // properties and improves each gyro's model with them.
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -254,15 +253,6 @@ class FleetRun {
   Population population_;
 };
 
-// SIGHUP interrupts too unless it is ignored, as by nohup.
-void end_with_the_terminal() {
-  struct sigaction interrupt {
-  }, hangup{};
-  sigaction(SIGINT, nullptr, &interrupt);
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
-}
-
 void run_fleet(const FleetArguments& arguments) {
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
@@ -283,7 +273,6 @@ void run_fleet(const FleetArguments& arguments) {
     return;
   }
   catch_interrupts();
-  end_with_the_terminal();
   fleet.run();
 }
 
