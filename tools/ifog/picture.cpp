@@ -12,7 +12,7 @@
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"

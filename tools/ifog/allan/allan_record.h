@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of `ifog allan` for one rate, made from a column of a capture and written as table, JSON and
-// picture.
+// Results of `ifog allan` for one rate, made from a column of a capture, and their picture.
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,8 +14,8 @@
 #include "filters/allan/theo1.h"
 #include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/captures/time_part.h"
 #include "tools/report/chart.h"
 #include "tools/report/coefficients.h"
 
@@ -98,10 +96,6 @@ AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptio
 
 std::string six_digits(double value);
 
-nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
-void print_allan(const AllanRecord& record, const AllanOptions& options);
-// One line per record, if there are several.
-void print_comparison(const std::vector<AllanRecord>& records);
 // Logarithmic axes, confidence bands and the fitted noise terms.
 report::Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& records);
 void draw_allan(const std::string& path, const std::vector<AllanRecord>& records);

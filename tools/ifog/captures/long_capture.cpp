@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "drivers/capture/csv/text_cells.h"
@@ -11,7 +13,9 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -28,6 +32,41 @@ std::string place_of(const Model& model, const std::string& channel) {
 }
 
 }  // namespace
+
+void TimePart::add_to(const Command& command, const std::string& of_from, const std::string& of_to) {
+  const auto add = [&command](const char* name, Bound& bound, const std::string& help) {
+    const auto take = [name, &bound](const std::string& text) {
+      const std::optional<SaidTime> said = SaidTime::parse(text);
+      if (!said)
+        throw WrongUsage(
+            name, "is " + in_quotes(text) + ", expected a number of seconds or a date, 2026-05-01T12:00:00Z");
+      static_cast<SaidTime&>(bound) = *said;
+      bound.text = text;
+    };
+    command.add_taken<std::string>(name, take, help, {.type = "TIME"});
+  };
+  add("--from", from, of_from);
+  add("--to", to, of_to);
+}
+
+TimePart::Rows TimePart::rows(std::span<const double> time_s, const TimeOrigin& origin,
+                              const std::string& name) const {
+  const auto first_from = [&](const SaidTime& wanted) {
+    const auto at =
+        std::ranges::partition_point(time_s, [&](double time) { return wanted.is_after(origin, time); });
+    return static_cast<std::size_t>(at - time_s.begin());
+  };
+  const std::size_t begin = first_from(from), end = std::max(begin, first_from(to));
+  if (begin == end && !time_s.empty())
+    refuse_empty(origin.in_s(time_s.front()), origin.in_s(time_s.back()), name);
+  return {begin, end};
+}
+
+void TimePart::refuse_empty(double first_s, double last_s, const std::string& name) const {
+  throw refusal("{}: nothing between --from{} and --to{}, expected times within {} … {} s", name,
+                from.text.empty() ? "" : " " + from.text, to.text.empty() ? "" : " " + to.text,
+                told_time(first_s), told_time(last_s));
+}
 
 CaptureView view_of(const LongTable& table, const std::string& path) {
   const CaptureShape shape = capture_shape(table.header, path, table);

@@ -23,7 +23,7 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/verdict.h"

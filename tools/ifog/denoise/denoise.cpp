@@ -24,6 +24,7 @@
 #include "filters/model_file/kept_noise.h"
 #include "filters/series/median_step.h"
 #include "filters/series/samples.h"
+#include "filters/settings/filter_table.h"
 #include "filters/smoother/smoother.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/capture_input.h"

@@ -9,7 +9,7 @@
 
 #include "filters/settings/filter_settings.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 

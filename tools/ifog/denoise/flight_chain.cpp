@@ -21,15 +21,12 @@ class FlightChain {
         driver_(driver),
         settings_(settings),
         fixed_(fixed),
-        rows_(rows),
         first_(settings_()),
         now_(chain_settings(first_)),
-        chain_(now_, first_),
-        times_(driver_.description(), rows_),
+        chain_(now_, first_, rows),
+        times_(driver_.description(), rows),
         runs_{flight.header().run, flight.header().settings},
-        missed_{!begins_a_run(flight.header()), {}} {
-    rows_.begin(now_.axes, first_);
-  }
+        missed_{!begins_a_run(flight.header()), {}} {}
 
   void take(const RecordedSample& recorded) {
     read_sample(recorded.sample, now_.facts.frame_channels, reading_);
@@ -43,11 +40,9 @@ class FlightChain {
       reading_.channel_age_s[c] = value.age_s(recorded.read_ns);
     }
     times_.advance(recorded.sample);
-    const Increment* const increment = chain_.run(reading_, out_);
-    if (increment == nullptr) return;
+    if (!chain_.run(reading_, times_.now_s())) return;
     missed_.sample(times_.now_s());
     merged_.sample(times_.now_s());
-    chain_.count(rows_.add(times_.now_s(), *increment, out_));
   }
 
   void discontinuity() {
@@ -127,7 +122,6 @@ class FlightChain {
   DriverInstance& driver_;
   const std::function<OfflineSettings()>& settings_;
   bool fixed_;
-  DenoisedRows& rows_;
   std::vector<std::size_t> recorded_at_;
   OfflineSettings first_;
   ChainSettings now_;
@@ -135,7 +129,6 @@ class FlightChain {
   OfflineTimes times_;
   Runs runs_;
   Reading reading_;
-  ChainOutput out_;
   Occurrence missed_;  // samples or the beginning of a run
   Occurrence merged_;  // samples merged near the next one
 };

@@ -128,8 +128,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   const CaptureShape shape = capture_shape(capture.names(), name, capture);
   const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
   const SampleClock clock = capture.size() < 2 ? SampleClock{} : sample_clock(capture.time_s);
-  ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings);
-  rows.begin(shape.axes, settings);
+  ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings, rows);
   // The time, the axes, the channels.
   std::vector<std::span<const double>> views{capture.time_s};
   views.resize(1 + shape.axes.size());
@@ -138,7 +137,6 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
       views[1 + shape.places[c].at] = capture.columns[c].values;
   for (const std::size_t c : channels) views.emplace_back(capture.columns[c].values);
   Reading reading;
-  ChainOutput out;
   std::optional<RowTimes> times;
   if (capture.size() > 0) times.emplace(views[0], clock);
   Progress progress("denoising", capture.size());
@@ -156,8 +154,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
       reading.channel[c] = views[1 + shape.axes.size() + c][i];
       if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
     }
-    if (const Increment* const increment = chain.run(reading, out))
-      chain.count(rows.add(views[0][i], *increment, out));
+    chain.run(reading, views[0][i]);
   }
   OfflineResult result = chain.finish();
   // Row times are as logged; no clock was set.
@@ -169,20 +166,17 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
                                 const OfflineSettings& settings, DenoisedRows& rows) {
   const ChainSettings chain_settings = recording_settings(settings, driver, file.path());
   const SensorFacts& facts = chain_settings.facts;
-  rows.begin(chain_settings.axes, settings);
-  ChainRun chain(chain_settings, settings);
+  ChainRun chain(chain_settings, settings, rows);
   Reading reading;
   // The recording has no channels of other sources: they have no value and infinite age.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
-  ChainOutput out;
   OfflineTimes times(driver.description(), rows);
   if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
   const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
     times.advance(sample);
     read_sample(sample, facts.frame_channels, reading);
-    if (const Increment* const increment = chain.run(reading, out))
-      chain.count(rows.add(times.now_s(), *increment, out));
+    chain.run(reading, times.now_s());
   });
   for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
@@ -202,9 +196,10 @@ ChainSettings recording_settings(const OfflineSettings& settings, const DriverIn
   return out;
 }
 
-ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline)
-    : model_path_(offline.sensor.model), first_sequence_(offline.first_sequence) {
+ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline, DenoisedRows& rows)
+    : model_path_(offline.sensor.model), rows_(rows), first_sequence_(offline.first_sequence) {
   begin(settings);
+  rows_.begin(settings.axes, offline);
 }
 
 void ChainRun::begin(const ChainSettings& settings) {
@@ -223,13 +218,14 @@ void ChainRun::exchange(const ChainSettings& settings) {
   describe();
 }
 
-const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
-  if (!incrementer_->next(reading, increment_)) return nullptr;
+bool ChainRun::run(const Reading& reading, double time_s) {
+  if (!incrementer_->next(reading, increment_)) return false;
   // Modulo 2^64, because the part may begin before its own counter.
   if (first_sequence_) sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
   increment_.sequence += sequence_shift_;
-  chain_->process(increment_, out);
-  return &increment_;
+  chain_->process(increment_, out_);
+  count(rows_.add(time_s, increment_, out_));
+  return true;
 }
 
 OfflineResult ChainRun::finish() {

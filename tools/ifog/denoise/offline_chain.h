@@ -92,26 +92,29 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
 
 class ChainRun {
  public:
-  // Throws std::runtime_error with one line; names the file if the model is wrong.
-  ChainRun(const ChainSettings& settings, const OfflineSettings& offline);
+  // Begins the rows. Throws std::runtime_error with one line; names the file if the model is wrong.
+  ChainRun(const ChainSettings& settings, const OfflineSettings& offline, DenoisedRows& rows);
   // Starts as the daemon does.
   void begin(const ChainSettings& settings);
   // Uses other settings from the next sample on, as the daemon does.
   void exchange(const ChainSettings& settings);
-  // Null: the sample is a duplicate or out of order.
-  const Increment* run(const Reading& reading, ChainOutput& out);
-  // Says if the samples since the last call count in the result.
-  void count(bool counts);
+  // Adds the output to the rows; only samples in their part count in the result. False: the sample is a
+  // duplicate or out of order.
+  bool run(const Reading& reading, double time_s);
   void discontinuity() { incrementer_->discontinuity(); }
   OfflineResult finish();
 
  private:
   void describe();
+  // Says if the samples since the last call count in the result.
+  void count(bool counts);
 
   std::string model_path_;
+  DenoisedRows& rows_;
   std::optional<Incrementer> incrementer_;
   std::optional<SignalChain> chain_;
   Increment increment_;
+  ChainOutput out_;
   std::optional<std::uint64_t> first_sequence_;
   std::uint64_t sequence_shift_ = 0;
   OfflineResult result_;

@@ -11,9 +11,8 @@ namespace ifog::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr const char* kHistorySchema = "ifog.history/1";
+constexpr const char *kHistorySchema = "ifog.history/1", *kNightSchema = "ifog.night/1";
 constexpr const char* kAdopt = "adopt";
 
 struct HistoryFile {
@@ -26,8 +25,6 @@ void fields(Io& io, T& of) {
   io("sensor", of.sensor);
   io("changes", of.changes);
 }
-
-constexpr const char* kNightSchema = "ifog.night/1";
 
 std::string path_of(const std::string& state, const std::string& sensor) {
   return (std::filesystem::path(state) / (sensor + ".night.json")).string();
@@ -48,9 +45,8 @@ void fields(Io& io, T& of) {
 }
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
-  const std::optional<json> file = read_state_json(path(), kHistorySchema);
-  if (!file) return;
-  with_keys(path(), [&] { changes_ = from_json<std::vector<ModelChange>>(file->at("changes")); });
+  if (std::optional<HistoryFile> file = read_state<HistoryFile>(path(), kHistorySchema))
+    changes_ = std::move(file->changes);
 }
 
 // A revert undoes the latest adoption that is not reverted yet, like nested brackets.
@@ -115,10 +111,7 @@ void fields(Io& io, T& of) {
 }
 
 std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
-  const std::string path = path_of(state, sensor);
-  const std::optional<nlohmann::json> file = read_state_json(path, kNightSchema);
-  if (!file) return std::nullopt;
-  return with_keys(path, [&]() -> std::optional<Bookmark> { return from_json<Bookmark>(*file); });
+  return read_state<Bookmark>(path_of(state, sensor), kNightSchema);
 }
 
 void write_bookmark(const std::string& state, const Bookmark& bookmark) {

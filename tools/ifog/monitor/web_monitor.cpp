@@ -25,7 +25,7 @@
 #include "page_source.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/monitor/view_lines.h"
+#include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
 namespace {

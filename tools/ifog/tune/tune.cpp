@@ -28,7 +28,6 @@
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
