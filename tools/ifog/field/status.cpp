@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog status: all sensors of this computer's daemon on one screen.
+// ifog status: all sensors of this computer's daemon on one screen. ifog proposals: the models that were found at
+// night and not adopted.
 #include <chrono>
 #include <cstdint>
 #include <exception>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values of one sensor that are shown: figures of the last interval, losses, and the recent rate.
+// The values of one sensor that are shown: figures of the last interval, losses, and the recent rate; also as
+// lines of text, for a screen of any width or a file.
 #pragma once
 
 #include <array>
