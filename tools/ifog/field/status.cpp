@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog status: all sensors of this computer's daemon on one screen. ifog proposals: the models that were found at
-// night and not adopted.
+// ifog status: the sensors of this computer's daemon. ifog proposals: models found at night, not adopted.
 #include <chrono>
 #include <cstdint>
 #include <exception>

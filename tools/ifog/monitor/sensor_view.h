@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The values of one sensor that are shown: figures of the last interval, losses, and the recent rate; also as
-// lines of text, for a screen of any width or a file.
+// What is shown of a sensor: figures of the last interval, losses, the recent rate; and these as lines.
 #pragma once
 
 #include <array>
