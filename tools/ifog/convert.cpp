@@ -10,8 +10,8 @@
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -57,15 +57,14 @@ void add_convert(const Command& program) {
   auto state = std::make_shared<Convert>();
   const Command command =
       program.add_subcommand("convert", "Turn a capture into a device's bytes or CAN frames, or back");
-  command
-      .add_option(
-          "FROM", state->from,
-          "Capture (.csv, .csv.gz, .h5), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
-          "log (.log), LCM log")
-      .required();
-  command
-      .add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
-      .required();
+  command.add_option(
+      "FROM", state->from,
+      "Capture (.csv, .csv.gz, .h5), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
+      "log (.log), LCM log",
+      {.required = true});
+  command.add_option("TO", state->to,
+                     "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log",
+                     {.required = true});
   state->input.add_to(command);
   command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(

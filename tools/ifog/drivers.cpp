@@ -10,7 +10,7 @@
 #include "drivers/host/plugin.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 

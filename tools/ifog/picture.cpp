@@ -12,15 +12,15 @@
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
+#include "tools/report/scale.h"
 #include "tools/report/text.h"
-#include "tools/report/time_axis.h"
 
 namespace ifog::tools {
 namespace {
@@ -83,13 +83,12 @@ void add_picture(const Command& program) {
   auto a = std::make_shared<PictureArguments>();
   const Command command = program.add_subcommand(
       "picture", "What the daemon published: raw against denoised, and both Allan curves");
-  command.add_option("log", a->log, "Log of lcm-logger").required();
+  command.add_option("log", a->log, "Log of lcm-logger", {.required = true});
   command.add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
   command.add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
   a->part.add_to(command);
-  command.add_option("-o,--output", a->picture, "Picture, .svg or .png")
-      .required()
-      .check(report::wrong_picture_name);
+  command.add_option("-o,--output", a->picture, "Picture, .svg or .png",
+                     {.required = true, .check = report::wrong_picture_name});
   command.callback([a] { run_picture(*a); });
 }
 

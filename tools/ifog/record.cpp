@@ -15,10 +15,9 @@
 #include "tools/ifog/captures/lcm/lcm_listener.h"
 #include "tools/ifog/captures/lcm/message_archive.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -112,25 +111,20 @@ void add_record(const Command& program) {
   const Command command =
       program.add_subcommand("record", "Record what the daemon publishes on LCM, for every command to read");
   auto options = std::make_shared<RecordOptions>();
-  command.add_option("-o,--output", options->folder, "Folder of the recordings; made if it is not there")
-      .required()
-      .type_name("FOLDER");
+  command.add_option("-o,--output", options->folder, "Folder of the recordings; made if it is not there",
+                     {.required = true, .type = "FOLDER"});
   command.add_option("--sensor", options->sensor, "Only this sensor");
-  command
-      .add_option("--lcm-channel", options->channels,
-                  "Another LCM channel, with ifog.channel_t; may stand several times")
-      .type_name("NAME");
-  command.add_option("--seconds", options->seconds, "Stop after this long").within(1e-3, 1e9);
-  command.add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes")
-      .within(1e6, 1e15)
-      .shows_default();
-  command.add_option("--days", options->days, "Keep nothing older").within(1e-3, 1e5).shows_default();
-  command
-      .add_option("--file-bytes", options->file_bytes,
-                  "End a file at this size, at most a quarter of --bytes")
-      .within(1e5, 1e9)
-      .shows_default();
-  command.add_option("--lcm-url", options->url, "As in the daemon's configuration").type_name("URL");
+  command.add_option("--lcm-channel", options->channels,
+                     "Another LCM channel, with ifog.channel_t; may stand several times", {.type = "NAME"});
+  command.add_option("--seconds", options->seconds, "Stop after this long", {.range = within(1e-3, 1e9)});
+  command.add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes",
+                     {.shows_default = true, .range = within(1e6, 1e15)});
+  command.add_option("--days", options->days, "Keep nothing older",
+                     {.shows_default = true, .range = within(1e-3, 1e5)});
+  command.add_option("--file-bytes", options->file_bytes,
+                     "End a file at this size, at most a quarter of --bytes",
+                     {.shows_default = true, .range = within(1e5, 1e9)});
+  command.add_option("--lcm-url", options->url, "As in the daemon's configuration", {.type = "URL"});
   command.callback([options] {
     if (options->file_bytes > options->bytes / 4.0)
       throw WrongUsage("--file-bytes", "is more than a quarter of --bytes, expected room for four files");

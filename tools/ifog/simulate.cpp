@@ -2,6 +2,7 @@
 // ifog simulate: a capture from a scenario file; with --truth also the true values.
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/capture/files/file_kind.h"
@@ -12,9 +13,8 @@
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
@@ -25,8 +25,7 @@ namespace {
 struct Simulate {
   CaptureInput encoding;
   std::string scenario, output, truth, axis;
-  std::uint64_t seed = 0;
-  bool seed_given = false;
+  std::optional<std::uint64_t> seed;
 
   void run() const {
     encoding.will_read("SCENARIO", scenario);
@@ -36,7 +35,7 @@ struct Simulate {
     expect_ending("--truth", truth,
                   has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
                   std::string(".json, ").append(kColumnEndings));
-    simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
+    simulate::Scenario s = simulate::read_scenario(scenario, seed ? &*seed : nullptr);
     const simulate::Simulation made = naming(scenario, [&s] {
       Progress progress("simulating", 0);
       return simulate::simulate(s, progress.teller());
@@ -65,24 +64,19 @@ void add_simulate(const Command& program) {
   auto state = std::make_shared<Simulate>();
   const Command command =
       program.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
-  command.add_option("SCENARIO", state->scenario, "Scenario (.toml)").required();
-  command
-      .add_option("-o,--output", state->output,
-                  "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log")
-      .required();
+  command.add_option("SCENARIO", state->scenario, "Scenario (.toml)", {.required = true});
+  command.add_option("-o,--output", state->output,
+                     "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log", {.required = true});
   command.add_option("--truth", state->truth,
                      "Write what the capture does not tell: .json the parameters, .csv or .h5 the true rate "
                      "and each effect");
-  const Option seed = command.add_option("--seed", state->seed, "Instead of the scenario's");
+  command.add_option("--seed", state->seed, "Instead of the scenario's");
   state->encoding.add_driver_to(command);
   command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(
       "Examples:\n  ifog simulate /usr/share/ifogd/scenarios/rest.toml --output rest.csv.gz --truth "
       "rest.truth.json");
-  command.callback([state, seed] {
-    state->seed_given = seed.given();
-    state->run();
-  });
+  command.callback([state] { state->run(); });
 }
 
 }  // namespace ifog::tools

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tools/report/plot_data.h"
+#include "tools/report/scale.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {

@@ -4,14 +4,17 @@
 #include <librsvg/rsvg.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "tools/report/style.h"
+#include "report_source.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
@@ -59,6 +62,20 @@ std::string png(const std::string& path, const std::string& svg) {
   return bytes;
 }
 
+// The page's colours of light mode, for programs without CSS variables.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDaylight{{{"--paper", "#ffffff"},
+                                                                                   {"--ink", "#1c2127"},
+                                                                                   {"--muted", "#4a545e"},
+                                                                                   {"--rule", "#8b949d"},
+                                                                                   {"--grid", "#e1e5e9"},
+                                                                                   {"--before", "#c26a1b"},
+                                                                                   {"--after", "#1a5fb4"},
+                                                                                   {"--fit", "#10151a"},
+                                                                                   {"--second", "#3f7d4e"},
+                                                                                   {"--raw", "#a3acb5"},
+                                                                                   {"--third", "#7b4ba0"},
+                                                                                   {"--fourth", "#b3263a"}}};
+
 }  // namespace
 
 std::string picture_svg(const std::string& title, const std::vector<PictureRow>& rows, double width) {
@@ -95,6 +112,20 @@ std::string wrong_picture_name(const std::string& path) {
 
 void write_picture(const std::string& path, const std::string& svg) {
   write_file(path, has_ending(path, ".png") ? png(path, svg) : svg);
+}
+
+std::string page_style() { return std::string(kReportStyle).append(kChartStyle); }
+
+std::string page_script() { return kReportScript; }
+
+std::string picture_style() {
+  std::string rules = kChartStyle;
+  for (const auto& [name, colour] : kDaylight) {
+    const std::string use = "var(" + std::string(name) + ")";
+    for (std::size_t at = rules.find(use); at != std::string::npos; at = rules.find(use, at))
+      rules.replace(at, use.size(), colour);
+  }
+  return rules;
 }
 
 }  // namespace ifog::report

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of several charts as SVG or PNG file, for `--plot` of every command.
+// Style of the report and its charts from page.css, chart.css and page.js, and a picture of several charts as
+// SVG or PNG file, for `--plot` of every command.
 #pragma once
 
 #include <string>
@@ -27,5 +28,9 @@ std::string wrong_picture_name(const std::string& path);
 
 // Format by the name's ending; PNG with two dots per pixel. Throws std::runtime_error with one line.
 void write_picture(const std::string& path, const std::string& svg);
+
+std::string page_style();     // light mode, dark mode and print
+std::string page_script();    // shows values under the pointer; without the script element
+std::string picture_style();  // charts only, in colours on white, without CSS variables
 
 }  // namespace ifog::report

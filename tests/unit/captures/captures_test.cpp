@@ -17,7 +17,7 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/lcm/message_archive.h"
-#include "tools/ifog/captures/model_axes.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 // Messages into recordings: what is lost is lost in one place, and a folder is one recorder's.

@@ -18,7 +18,6 @@
 #include "drivers/transport/clock.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
-#include "tools/ifog/field/bookmark.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/recorded.h"

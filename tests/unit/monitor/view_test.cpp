@@ -15,7 +15,6 @@
 #include "msgs/counters.h"
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/sensor_view.h"
-#include "tools/ifog/monitor/view_lines.h"
 #include "tools/report/text.h"
 
 namespace ifog::tools {

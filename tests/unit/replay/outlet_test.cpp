@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `ifog replay` does when the system has no room: the system is a stand-in that answers as told.
-#include "tools/ifog/replay/outlet.h"
+#include "tools/ifog/replay/replay_target.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

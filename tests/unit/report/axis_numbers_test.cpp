@@ -13,7 +13,7 @@
 #include "tools/report/chart.h"
 #include "tools/report/coefficients.h"
 #include "tools/report/pages/fleet_page.h"
-#include "tools/report/time_axis.h"
+#include "tools/report/scale.h"
 
 namespace {
 

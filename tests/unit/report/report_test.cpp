@@ -13,10 +13,9 @@
 #include "tests/unit/report/example.h"
 #include "tools/report/chart.h"
 #include "tools/report/pages/diagnosis_page.h"
-#include "tools/report/pages/traced.h"
+#include "tools/report/pages/diagnosis_pictures.h"
 #include "tools/report/pages/words.h"
 #include "tools/report/picture.h"
-#include "tools/report/style.h"
 #include "tools/report/text.h"
 
 namespace {

@@ -14,10 +14,8 @@
 #include "filters/rest/rest.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/told_time.h"
-#include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/naming.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -106,40 +104,35 @@ std::size_t same_rows(std::span<const double> a, std::span<const double> b) {
 // Number of leading rows in which a denoised rate equals the compensated one; 0 for other signals and if they
 // never differ. Until the filter knows the noise it publishes the compensated rate, whose noise and jumps are
 // not the filter's.
-std::size_t start_of_filter(const LongTable& table, const LongColumn& column, const std::string& signal,
-                            const std::string& axis) {
-  if (signal != "denoised") return 0;
-  const std::string wanted = "compensated" + (axis.empty() ? "" : "_" + axis) + "_radps";
+std::size_t start_of_filter(const LongTable& table, const LoggedRate& logged) {
+  if (logged.signal != "denoised") return 0;
+  const std::string wanted = "compensated" + (logged.axis.empty() ? "" : "_" + logged.axis) + "_radps";
   for (const LongColumn& other : table.columns) {
     if (other.name != wanted) continue;
-    const std::size_t same = same_rows(column.values, other.values);
+    const std::size_t same = same_rows(logged.column.values, other.values);
     return same < table.size() ? same : 0;
   }
   return 0;
 }
 
-struct AnalysedRate {
-  const LongColumn& column;
-  std::string signal, axis;
-};
-
 // The rates to analyse; throws if there are none.
-std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& table,
-                                   const TimePart::Rows& rows, const std::string& wanted) {
-  std::vector<AnalysedRate> rates;
+std::vector<LoggedRate> rates_of(const AnalysedPart& part, const std::string& wanted) {
+  const std::string& name = part.capture;
+  const TimePart::Rows& rows = part.rows;
+  std::vector<LoggedRate> rates;
   std::string signal, axis;
   std::vector<std::string> axes, left_out;
-  for (const LongColumn& column : table.columns) {
+  for (const LongColumn& column : part.table.columns) {
     if (!signal_of(column.name, signal, axis)) continue;
     if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
     if (!wanted.empty() && axis != wanted) continue;
     if (is_dead(rows.of(column.values)))
       left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
     else
-      rates.push_back({column, signal, axis});
+      rates.push_back({part, column, signal, axis, rows.of(column.values)});
   }
   if (axes.empty())
-    fail_at(name, table.header_line,
+    fail_at(name, part.table.header_line,
             "no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
   if (rates.empty() && left_out.empty())
     throw refusal("{}: --axis is {}, expected {}", name, in_quotes(wanted), expected_axes(axes));
@@ -148,27 +141,24 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
   return rates;
 }
 
-AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const AllanOptions& options) {
+AllanRecord record_of(LoggedRate logged, const AllanOptions& options) {
+  const AnalysedPart& of = logged.of;
   const TimePart::Rows& rows = of.rows;
-  const auto& [column, signal, axis] = wanted;
-  std::span<const double> rate = column.values;
-  std::string shown = signal;
   Samples error;
-  if (options.minus_reference && signal == "rate") {
-    error = less_reference(of.capture, of.table, rate, axis);
-    rate = error;
-    shown = "error";
+  if (options.minus_reference && logged.signal == "rate") {
+    error = less_reference(of.capture, of.table, logged.column.values, logged.axis);
+    logged.rate = rows.of(error);
+    logged.signal = "error";
   }
   // A part that ends before the filter starts is shown as it is.
-  const std::size_t started = start_of_filter(of.table, column, signal, axis);
+  const std::size_t started = start_of_filter(of.table, logged);
   const bool later = started > rows.begin && started < rows.end;
   const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
   Rest analysed = of.rest;
   analysed.at_rest = common(of.rest.at_rest, running);
-  const LoggedRate logged{of, shown + (axis.empty() ? "" : "_" + axis), rows.of(rate), column.repeats};
-  AllanRecord record = analyse(logged, shown, axis, analysed, options);
+  AllanRecord record = analyse(logged, analysed, options);
   if (later)
-    record.notes.push_back(of.capture + ": " + column.name + ": until " +
+    record.notes.push_back(of.capture + ": " + logged.column.name + ": until " +
                            told_time(of.shown_time_s(started - rows.begin)) +
                            " s the filter had not started and this is the compensated rate: dropped");
   if (const std::string motion = in_words(of.rest, of.clock.period_s, of.shown_time_s(0)); !motion.empty())
@@ -195,13 +185,13 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   if (time_s.size() < 3) throw refusal("{}: {} samples, expected at least 3", name, time_s.size());
   AnalysedPart part{name, table, rows, time_s, naming(name, [&] { return sample_clock(time_s); })};
   find_rest_of(part, options);
-  const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
+  const std::vector<LoggedRate> rates = rates_of(part, options.axis);
   // In parallel. An axis that fails is skipped; if all fail, the first error is thrown.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
   share_out(rates.size(), std::max(kRatesTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {
     try {
-      records[i] = record_of(part, rates[i], options);
+      records[i] = record_of(rates[i], options);
     } catch (...) {
       refused[i] = std::current_exception();
     }

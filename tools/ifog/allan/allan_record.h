@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of `ifog allan` for one rate, made from a column of a capture and written as table, JSON and
-// picture.
+// Results of `ifog allan` for one rate, made from a column of a capture, and their picture.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise/noise_coefficients.h"
+#include "filters/allan/stretches.h"
 #include "filters/allan/theo1.h"
+#include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/captures/time_part.h"
 #include "tools/report/chart.h"
 #include "tools/report/coefficients.h"
 
@@ -63,10 +65,37 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
 // True if the column is analysed.
 bool allan_wants(const std::string& column);
 
-nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
-void print_allan(const AllanRecord& record, const AllanOptions& options);
-// One line per record, if there are several.
-void print_comparison(const std::vector<AllanRecord>& records);
+// The part of a capture that is analysed, with the properties that all of its rates share.
+struct AnalysedPart {
+  const std::string& capture;  // its file
+  const LongTable& table;
+  TimePart::Rows rows;             // in the table
+  std::span<const double> time_s;  // of these rows, since the table's origin
+  SampleClock clock;
+  Rest rest = {};
+  std::string slow_turns = {};  // note about turns that remain; "" if none
+
+  // For messages; `row` counts in the part.
+  [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s[row]); }
+  // "file:line", or the sample's number if the file is not text.
+  [[nodiscard]] std::string place(std::size_t row) const;
+};
+
+// A rate as logged.
+struct LoggedRate {
+  const AnalysedPart& of;
+  const LongColumn& column;
+  std::string signal, axis;           // as in AllanRecord
+  std::span<const double> rate = {};  // in the part's rows
+
+  [[nodiscard]] std::string name() const { return axis.empty() ? signal : signal + "_" + axis; }
+};
+
+// Deviations, noise terms and changes of the noise, at rest. Throws std::runtime_error with one line.
+AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptions& options);
+
+std::string six_digits(double value);
+
 // Logarithmic axes, confidence bands and the fitted noise terms.
 report::Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& records);
 void draw_allan(const std::string& path, const std::vector<AllanRecord>& records);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/allan/logged_rate.h"
+#include "tools/ifog/allan/allan_record.h"
 
 #include <fmt/core.h>
 
@@ -17,7 +17,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {
@@ -85,7 +85,7 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
                               told_time(logged.of.shown_time_s(clock.first_gap)) + " s");
   if (nans > 0)
     note(first_nan,
-         missing_in_words(logged.column, nans, logged.rate.size(), logged.of.shown_time_s(first_nan)));
+         missing_in_words(logged.name(), nans, logged.rate.size(), logged.of.shown_time_s(first_nan)));
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
     record.notes.push_back(logged.of.capture + ": time is uneven by up to " +
                            six_digits(clock.worst_jitter_s * 1e3) +
@@ -104,7 +104,7 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   try {
     record.fit = noise_coefficients(sum, period);
   } catch (const std::invalid_argument& error) {
-    record.notes.push_back(name + ": " + logged.column + ": no coefficients: " + error.what());
+    record.notes.push_back(name + ": " + logged.name() + ": no coefficients: " + error.what());
   }
   const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
   record.points = deviation(sum, m, options.kind);
@@ -133,12 +133,11 @@ std::string AnalysedPart::place(std::size_t row) const {
 
 std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 
-AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
-                    const Rest& rest, const AllanOptions& options) {
-  const std::string &name = logged.of.capture, &column = logged.column;
+AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptions& options) {
+  const std::string &name = logged.of.capture, &signal = logged.signal, column = logged.name();
   AllanRecord record;
   record.capture = name;
-  record.axis = axis;
+  record.axis = logged.axis;
   record.signal = signal;
   record.sample_rate_hz = rounded_rate(logged.of.clock.period_s);
   record.worst_jitter_s = logged.of.clock.worst_jitter_s;
@@ -151,7 +150,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   if (parts.empty()) throw refusal("{}: {} has no values", name, column);
   const auto shown_time_s = [&](std::size_t row) { return logged.of.shown_time_s(row); };
   // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
-  record.findings.assign(logged.repeats.begin(), logged.repeats.end());
+  record.findings = logged.column.repeats;
   std::optional<Samples> cleaned;
   if (signal != "denoised" && !options.keep_motion)
     cleaned = without_leaps(logged.rate, logged.rate, parts, shown_time_s, record.findings);

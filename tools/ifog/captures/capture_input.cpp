@@ -16,12 +16,10 @@
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
-#include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -42,33 +40,29 @@ auto parsed(const char* option, const std::string& text, Parse&& parse) {
 
 void CaptureInput::add_to(const Command& command) {
   add_driver_to(command);
-  command
-      .add_option(
-          "--column", columns,
-          "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
-          "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
-          "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts; "
-          "reference_rate_x_radps is the true rate. May stand several times; columns not named are ignored")
-      .type_name("NAME=HEADER[:UNIT]");
-  command
-      .add_option(
-          "--time", time,
-          "Its time column: t:ms; sec+nsec or date+time: two columns that are one time; Date:d/m/y: dates "
-          "with the day first")
-      .type_name("HEADER[:UNIT]");
-  command
-      .add_option("--sample-rate", sample_rate_hz, "Its rows are even, at this rate, whatever its times say")
-      .positive();
-  command.add_option("--only", only, "Rows with this text in this column: sensor_id=0; or *: all, as of one")
-      .type_name("HEADER=VALUE");
-  command.add_option("--repeats", repeats, "Rows that repeat the one before: drop or keep")
-      .type_name("WHAT")
-      .one_of({"drop", "keep"});
-  command.add_option("--separator", separator, "Separator of the cells of a CSV file: ';' or tab")
-      .type_name("C");
-  command
-      .add_option("--group", group, "Group of an HDF5 file that holds the columns, or table of records: /imu")
-      .type_name("PATH");
+  command.add_option(
+      "--column", columns,
+      "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
+      "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
+      "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts; "
+      "reference_rate_x_radps is the true rate. May stand several times; columns not named are ignored",
+      {.type = "NAME=HEADER[:UNIT]"});
+  command.add_option(
+      "--time", time,
+      "Its time column: t:ms; sec+nsec or date+time: two columns that are one time; Date:d/m/y: dates "
+      "with the day first",
+      {.type = "HEADER[:UNIT]"});
+  command.add_option("--sample-rate", sample_rate_hz,
+                     "Its rows are even, at this rate, whatever its times say", {.range = positive()});
+  command.add_option("--only", only, "Rows with this text in this column: sensor_id=0; or *: all, as of one",
+                     {.type = "HEADER=VALUE"});
+  command.add_option("--repeats", repeats, "Rows that repeat the one before: drop or keep",
+                     {.choices = {"drop", "keep"}});
+  command.add_option("--separator", separator, "Separator of the cells of a CSV file: ';' or tab",
+                     {.type = "C"});
+  command.add_option("--group", group,
+                     "Group of an HDF5 file that holds the columns, or table of records: /imu",
+                     {.type = "PATH"});
 }
 
 CsvLayout CaptureInput::layout() const {
@@ -90,10 +84,10 @@ CsvLayout CaptureInput::layout() const {
 }
 
 void CaptureInput::add_driver_to(const Command& command) {
-  command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
-      .type_name("NAME");
-  command.add_option("--option", options, "Option of the driver; may stand several times")
-      .type_name("KEY=VALUE");
+  command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')",
+                     {.type = "NAME"});
+  command.add_option("--option", options, "Option of the driver; may stand several times",
+                     {.type = "KEY=VALUE"});
   command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc");
   command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log");
 }

@@ -19,7 +19,7 @@
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 

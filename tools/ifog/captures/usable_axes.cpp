@@ -8,7 +8,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -23,21 +23,18 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/compare/compare_picture.h"
 #include "tools/ifog/compare/verdict.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/listed_fields.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/tune/rest_columns.h"
+#include "tools/ifog/tune/noise_at_rest.h"
 #include "tools/report/picture.h"
 
 namespace ifog::tools {
@@ -292,11 +289,11 @@ void add_compare(const Command& program) {
       program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<CompareArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture").required();
+  command.add_option("capture", options->capture, "a capture", {.required = true});
   command.add_option("--model", options->model, "model file whose [filter] gives the settings");
   command.add_option("--json", options->json_file, "write the figures as JSON");
-  command.add_option("--plot", options->plot_file, "write a picture, .svg or .png")
-      .check(report::wrong_picture_name);
+  command.add_option("--plot", options->plot_file, "write a picture, .svg or .png",
+                     {.check = report::wrong_picture_name});
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);

@@ -12,7 +12,7 @@
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

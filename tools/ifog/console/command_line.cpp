@@ -14,7 +14,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/parser_texts.h"
 #include "tools/ifog/console/say.h"
 

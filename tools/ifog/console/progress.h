@@ -5,10 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <stop_token>
 #include <string>
 #include <thread>
+
+#include "drivers/capture/files/input_file.h"
 
 namespace ifog::tools {
 
@@ -48,5 +51,22 @@ std::string time_left(double until_step_s, double since_step_s, std::size_t done
 
 // Removes the bar before other text is printed.
 void clear_progress();
+
+// Shows the progress of reading a file, in bytes.
+class ReadingProgress {
+ public:
+  // The file must outlive this.
+  explicit ReadingProgress(InputFile& file, const char* what = "reading")
+      : file_(file), progress_(what + (" " + std::filesystem::path(file.path()).filename().string()), 0) {
+    file_.report_to(progress_.teller());
+  }
+  ~ReadingProgress() { file_.report_to({}); }
+  ReadingProgress(const ReadingProgress&) = delete;
+  ReadingProgress& operator=(const ReadingProgress&) = delete;
+
+ private:
+  InputFile& file_;
+  Progress progress_;
+};
 
 }  // namespace ifog::tools

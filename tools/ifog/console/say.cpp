@@ -16,9 +16,8 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {

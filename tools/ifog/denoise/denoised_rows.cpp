@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
@@ -13,7 +14,12 @@ namespace ifog::tools {
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
 
-void DenoisedRows::begin(const std::vector<std::string>& axes) {
+void DenoisedRows::begin(const std::vector<std::string>& axes, const OfflineSettings& settings) {
+  if (settings.model) {
+    tell_model_of_one_axis(*settings.model, settings.sensor.model, axes);
+    model_trial_.begin(*settings.model, axes);
+    reference_trial_.begin(axes);
+  }
   moments_.resize(axes.size());
   columns_.axes.resize(axes.size());
   std::vector<std::string> names{"time_s"};
@@ -62,6 +68,8 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
   if (inside) {
     ++extent_.written;
     count(out);
+    model_trial_.add(time_s, increment.rate_radps, out.compensated_radps);
+    reference_trial_.add(time_s, increment.rate_radps, out.compensated_radps);
   } else if (!smooth_) {  // which uses all rows
     return false;
   }

@@ -10,9 +10,11 @@
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "filters/series/samples.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/column_writer.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/denoise/model_trial.h"
 #include "tools/ifog/denoise/moments.h"
+#include "tools/ifog/denoise/offline_chain.h"
 
 namespace ifog::tools {
 
@@ -42,8 +44,10 @@ class DenoisedRows {
   // finish(); smooth: the same with the rows outside of `part`, and with the smoothed columns.
   DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
 
+  // Compares with the reference rate of this capture too; it must outlive this.
+  void follow(const LongTable& table) { reference_trial_.follow(table); }
   // Call it once, before the first sample.
-  void begin(const std::vector<std::string>& axes);
+  void begin(const std::vector<std::string>& axes, const OfflineSettings& settings);
   // Sets the origin of all times; before the first sample.
   void count_from(const TimeOrigin& origin) { origin_ = origin; }
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
@@ -61,6 +65,10 @@ class DenoisedRows {
   [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == extent_.written; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
+  // Of the settings' model.
+  [[nodiscard]] ModelTrial& model_trial() { return model_trial_; }
+  [[nodiscard]] const ModelTrial& model_trial() const { return model_trial_; }
+  [[nodiscard]] const ReferenceTrial& reference_trial() const { return reference_trial_; }
 
  private:
   // In the order of the file.
@@ -83,6 +91,8 @@ class DenoisedRows {
     bool over = false;  // after the end of the part
   } extent_;
   TimeOrigin origin_;
+  ModelTrial model_trial_;
+  ReferenceTrial reference_trial_;
 };
 
 }  // namespace ifog::tools

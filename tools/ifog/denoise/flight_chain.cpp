@@ -6,7 +6,7 @@
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/denoise/chain_run.h"
+#include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 
 namespace ifog::tools {
@@ -16,20 +16,17 @@ namespace {
 class FlightChain {
  public:
   FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
-              bool fixed, const OfflineSink& sink)
+              bool fixed, DenoisedRows& rows)
       : flight_(flight),
         driver_(driver),
         settings_(settings),
         fixed_(fixed),
-        sink_(sink),
         first_(settings_()),
         now_(chain_settings(first_)),
-        chain_(now_, first_),
-        times_(driver_.description(), sink_),
+        chain_(now_, first_, rows),
+        times_(driver_.description(), rows),
         runs_{flight.header().run, flight.header().settings},
-        missed_{!begins_a_run(flight.header()), {}} {
-    sink_.begin(now_.axes);
-  }
+        missed_{!begins_a_run(flight.header()), {}} {}
 
   void take(const RecordedSample& recorded) {
     read_sample(recorded.sample, now_.facts.frame_channels, reading_);
@@ -43,11 +40,9 @@ class FlightChain {
       reading_.channel_age_s[c] = value.age_s(recorded.read_ns);
     }
     times_.advance(recorded.sample);
-    const Increment* const increment = chain_.run(reading_, out_);
-    if (increment == nullptr) return;
+    if (!chain_.run(reading_, times_.now_s())) return;
     missed_.sample(times_.now_s());
     merged_.sample(times_.now_s());
-    chain_.count(sink_.sample(times_.now_s(), *increment, out_));
   }
 
   void discontinuity() {
@@ -127,7 +122,6 @@ class FlightChain {
   DriverInstance& driver_;
   const std::function<OfflineSettings()>& settings_;
   bool fixed_;
-  const OfflineSink& sink_;
   std::vector<std::size_t> recorded_at_;
   OfflineSettings first_;
   ChainSettings now_;
@@ -135,7 +129,6 @@ class FlightChain {
   OfflineTimes times_;
   Runs runs_;
   Reading reading_;
-  ChainOutput out_;
   Occurrence missed_;  // samples or the beginning of a run
   Occurrence merged_;  // samples merged near the next one
 };
@@ -144,8 +137,8 @@ class FlightChain {
 
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
-                             const OfflineSink& sink) {
-  FlightChain chain(flight, driver, settings, fixed, sink);
+                             DenoisedRows& rows) {
+  FlightChain chain(flight, driver, settings, fixed, rows);
   const RecordedSamples samples{[&](const RecordedSample& recorded) { chain.take(recorded); },
                                 [&] { chain.discontinuity(); }, [&] { chain.missing(); },
                                 [&](const FlightHeader& header) { chain.file(header); },

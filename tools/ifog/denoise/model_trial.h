@@ -3,6 +3,7 @@
 // is correlated with it look alike in one capture, but rarely in the next one. Then a warning is printed.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "filters/model_file/model.h"
 #include "filters/promise/running_trial.h"
 #include "filters/settings/axes.h"
+#include "tools/ifog/captures/table/long_table.h"
+#include "tools/ifog/denoise/moments.h"
 
 namespace ifog::tools {
 
@@ -31,6 +34,30 @@ class ModelTrial {
   std::vector<bool> of_rate_;
   std::optional<RunningTrial> trial_;
   std::vector<std::optional<ShareThere>> shares_;  // by axis
+};
+
+// Compares the raw and the compensated rate with the reference rate of the capture, where it has one.
+class ReferenceTrial {
+ public:
+  // The capture, which must outlive this; without it nothing is compared.
+  void follow(const LongTable& table) { table_ = &table; }
+  // Call it once, before the first sample.
+  void begin(const std::vector<std::string>& axes);
+  void add(double time_s, const Axes& raw_radps, const Axes& compensated_radps);
+  // Warns about each axis whose compensated rate is significantly farther from the reference than its raw one.
+  void tell(const std::string& capture) const;
+
+ private:
+  struct OfAxis {
+    const LongColumn* reference = nullptr;           // null: there is none
+    Moments raw, compensated;                        // of the present second: minus the reference
+    Moments raw_square, compensated_square, growth;  // of the means over 1 s; growth: of their square
+  };
+
+  const LongTable* table_ = nullptr;
+  std::size_t row_ = 0;
+  double second_ = 0.0;
+  std::vector<OfAxis> axes_;
 };
 
 }  // namespace ifog::tools

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -14,10 +15,10 @@
 #include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/series/median_step.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/denoise/chain_run.h"
+#include "tools/ifog/denoise/denoised_rows.h"
 
 namespace ifog::tools {
 namespace {
@@ -83,25 +84,51 @@ ChainSettings chain_settings_of(const LongTable& capture, const std::string& pat
   return out;
 }
 
+// Attributes an error to the filter's settings, or to the model with its file.
+std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::string& model_path) {
+  const auto made = [](const ChainSettings& of) { return std::make_unique<ChainParts>(of); };
+  if (!settings.model || model_path.empty()) return made(settings);
+  try {
+    return made(settings);
+  } catch (const ModelMisfit& misfit) {
+    const std::string line = misfit.line > 0 ? ":" + std::to_string(misfit.line) : "";
+    throw refusal("{}{}: {}", model_path, line, misfit.what());
+  } catch (const std::exception& error) {
+    ChainSettings without = settings;
+    without.model.reset();
+    static_cast<void>(made(without));  // throws if the model is not the cause
+    throw refusal("{}: {}", model_path, error.what());
+  }
+}
+
+void add(const IncrementerCounts& from, const IncrementerCounts& less, IncrementerCounts& to) {
+  for (std::uint64_t IncrementerCounts::*count :
+       {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
+        &IncrementerCounts::ambiguous, &IncrementerCounts::repeated, &IncrementerCounts::mixed,
+        &IncrementerCounts::restarts, &IncrementerCounts::invalid, &IncrementerCounts::saturated,
+        &IncrementerCounts::implausible, &IncrementerCounts::channel_implausible,
+        &IncrementerCounts::clock_steps, &IncrementerCounts::sensor_clock_sets, &IncrementerCounts::pauses})
+    to.*count += from.*count - less.*count;
+}
+
 }  // namespace
 
-OfflineTimes::OfflineTimes(const ifog_description& description, const OfflineSink& sink)
-    : times_(description), sink_(sink) {
+OfflineTimes::OfflineTimes(const ifog_description& description, DenoisedRows& rows)
+    : times_(description), rows_(rows) {
   times_.allow_restarts();
 }
 
 void OfflineTimes::advance(const ifog_sample& sample) {
   if (const std::optional<SampleTimes::Stamped> stamped = times_.next(sample)) now_s_ = stamped->since_s;
-  if (!std::exchange(begun_, true)) sink_.count_from(times_.origin());
+  if (!std::exchange(begun_, true)) rows_.count_from(times_.origin());
 }
 
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
-                              const OfflineSettings& settings, const OfflineSink& sink) {
+                              const OfflineSettings& settings, DenoisedRows& rows) {
   const CaptureShape shape = capture_shape(capture.names(), name, capture);
   const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
   const SampleClock clock = capture.size() < 2 ? SampleClock{} : sample_clock(capture.time_s);
-  ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings);
-  sink.begin(shape.axes);
+  ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings, rows);
   // The time, the axes, the channels.
   std::vector<std::span<const double>> views{capture.time_s};
   views.resize(1 + shape.axes.size());
@@ -110,7 +137,6 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
       views[1 + shape.places[c].at] = capture.columns[c].values;
   for (const std::size_t c : channels) views.emplace_back(capture.columns[c].values);
   Reading reading;
-  ChainOutput out;
   std::optional<RowTimes> times;
   if (capture.size() > 0) times.emplace(views[0], clock);
   Progress progress("denoising", capture.size());
@@ -128,8 +154,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
       reading.channel[c] = views[1 + shape.axes.size() + c][i];
       if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
     }
-    if (const Increment* const increment = chain.run(reading, out))
-      chain.count(sink.sample(views[0][i], *increment, out));
+    chain.run(reading, views[0][i]);
   }
   OfflineResult result = chain.finish();
   // Row times are as logged; no clock was set.
@@ -138,26 +163,94 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
 }
 
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
-                                const OfflineSettings& settings, const OfflineSink& sink) {
+                                const OfflineSettings& settings, DenoisedRows& rows) {
   const ChainSettings chain_settings = recording_settings(settings, driver, file.path());
   const SensorFacts& facts = chain_settings.facts;
-  sink.begin(chain_settings.axes);
-  ChainRun chain(chain_settings, settings);
+  ChainRun chain(chain_settings, settings, rows);
   Reading reading;
   // The recording has no channels of other sources: they have no value and infinite age.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
-  ChainOutput out;
-  OfflineTimes times(driver.description(), sink);
+  OfflineTimes times(driver.description(), rows);
   if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
   const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
     times.advance(sample);
     read_sample(sample, facts.frame_channels, reading);
-    if (const Increment* const increment = chain.run(reading, out))
-      chain.count(sink.sample(times.now_s(), *increment, out));
+    chain.run(reading, times.now_s());
   });
   for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
+}
+
+// The daemon's settings, with those of the recording. Its own message for an unknown rate names a
+// configuration key, not the file.
+ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
+                                 const std::string& path) {
+  const ifog_description& description = driver.description();
+  if (!(settings.sensor.nominal_rate_hz > 0.0) && !(description.nominal_rate_hz > 0.0))
+    throw refusal("{}: driver {} does not know the sample rate, expected --rate HZ or --option rate_hz=HZ",
+                  path, driver.table().name);
+  ChainSettings out = sensor_chain_settings(settings.sensor, description, settings.model);
+  out.learned = settings.learned;
+  out.since_power_up_s = settings.since_power_up_s;
+  return out;
+}
+
+ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline, DenoisedRows& rows)
+    : model_path_(offline.sensor.model), rows_(rows), first_sequence_(offline.first_sequence) {
+  begin(settings);
+  rows_.begin(settings.axes, offline);
+}
+
+void ChainRun::begin(const ChainSettings& settings) {
+  if (incrementer_) count(counts_);  // counts after the last sample
+  counted_ = {};
+  incrementer_.emplace(settings.facts);
+  chain_.emplace(parts_of(settings, model_path_));
+  sequence_shift_ = 0;
+  result_.axes = settings.axes;
+  result_.sample_rate_hz = settings.facts.nominal_rate_hz;
+  describe();
+}
+
+void ChainRun::exchange(const ChainSettings& settings) {
+  (void)chain_->swap(parts_of(settings, model_path_));
+  describe();
+}
+
+bool ChainRun::run(const Reading& reading, double time_s) {
+  if (!incrementer_->next(reading, increment_)) return false;
+  // Modulo 2^64, because the part may begin before its own counter.
+  if (first_sequence_) sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
+  increment_.sequence += sequence_shift_;
+  chain_->process(increment_, out_);
+  count(rows_.add(time_s, increment_, out_));
+  return true;
+}
+
+OfflineResult ChainRun::finish() {
+  count(counts_);
+  result_.filter = chain_->parts().filter();
+  result_.shares = chain_->parts().shares();
+  result_.learns_walk = chain_->parts().learns_walk();
+  result_.noise_known = chain_->parts().noise_known();
+  return std::move(result_);
+}
+
+void ChainRun::count(bool counts) {
+  const IncrementerCounts& now = incrementer_->counts();
+  if (counts) add(now, counted_, result_.counts);
+  if (counts && incrementer_->refused_clock()) result_.refused_clock = incrementer_->refused_clock();
+  counted_ = now;
+  counts_ = counts;
+}
+
+void ChainRun::describe() {
+  for (const std::string& effect : chain_->parts().left_out())
+    if (std::find(result_.left_out.begin(), result_.left_out.end(), effect) == result_.left_out.end())
+      result_.left_out.push_back(effect);
+  result_.model = chain_->parts().model_identity();
+  result_.noise_learned = !chain_->parts().noise_known();
 }
 
 }  // namespace ifog::tools

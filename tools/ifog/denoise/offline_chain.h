@@ -12,6 +12,7 @@
 
 #include "daemon/config/config.h"
 #include "drivers/capture/times/sample_times.h"
+#include "drivers/host/driver_instance.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -19,6 +20,8 @@
 #include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
+
+class DenoisedRows;
 
 struct OfflineSettings {
   SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
@@ -29,21 +32,11 @@ struct OfflineSettings {
   std::optional<double> since_power_up_s;  // ChainSettings::since_power_up_s
 };
 
-struct OfflineSink {
-  // Called once, before the first sample, with the sensor's axes.
-  std::function<void(const std::vector<std::string>& axes)> begin;
-  // Called before the first sample of a recording, with the origin of its times.
-  std::function<void(const TimeOrigin&)> count_from;
-  // Called for each sample. time_s: as in the capture or recording (sample_times.h), since the origin.
-  // Returns true if the sample is in the wanted part and counts.
-  std::function<bool(double time_s, const Increment&, const ChainOutput&)> sample;
-};
-
 // Times of a recording's samples, the same in every command. If a device's clock jumps back, the times
 // continue, as in the daemon.
 class OfflineTimes {
  public:
-  OfflineTimes(const ifog_description& description, const OfflineSink& sink);
+  OfflineTimes(const ifog_description& description, DenoisedRows& rows);
   // Call it before the chain's output for the sample is passed on.
   void advance(const ifog_sample& sample);
   [[nodiscard]] double now_s() const { return now_s_; }
@@ -51,14 +44,14 @@ class OfflineTimes {
 
  private:
   SampleTimes times_;
-  const OfflineSink& sink_;
+  DenoisedRows& rows_;
   double now_s_ = 0.0;
   bool begun_ = false;
 };
 
 struct OfflineResult {
   std::vector<std::string> axes;
-  IncrementerCounts counts;             // of the samples that count, see OfflineSink
+  IncrementerCounts counts;             // of the samples in the wanted part
   std::optional<double> refused_clock;  // Incrementer::refused_clock()
   FilterSettings filter;                // in use at the end
   AxisShares shares;                    // ChainParts::shares()
@@ -80,16 +73,53 @@ struct OfflineResult {
   std::size_t exchanges = 0;    // of model or filter settings within the runs
 };
 
-// All throw std::runtime_error or std::invalid_argument with one line. name: of the capture, for messages.
+// All pass each output to `rows`, and throw std::runtime_error or std::invalid_argument with one line. name: of the capture, for messages.
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
-                              const OfflineSettings& settings, const OfflineSink& sink);
+                              const OfflineSettings& settings, DenoisedRows& rows);
 // Uses the samples, times and channels that the daemon had. Calls `settings` at the first file, at each file
 // with other settings and at each restart of the daemon. `fixed`: the settings do not change, and only
 // restarts count.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
-                             const OfflineSink& sink);
+                             DenoisedRows& rows);
 OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, DriverInstance& driver,
-                                const OfflineSettings& settings, const OfflineSink& sink);
+                                const OfflineSettings& settings, DenoisedRows& rows);
+
+// Settings for a driver's samples. path: of the recording, for messages. Throws std::runtime_error with one
+// line if the sample rate is unknown.
+[[nodiscard]] ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
+                                               const std::string& path);
+
+class ChainRun {
+ public:
+  // Begins the rows. Throws std::runtime_error with one line; names the file if the model is wrong.
+  ChainRun(const ChainSettings& settings, const OfflineSettings& offline, DenoisedRows& rows);
+  // Starts as the daemon does.
+  void begin(const ChainSettings& settings);
+  // Uses other settings from the next sample on, as the daemon does.
+  void exchange(const ChainSettings& settings);
+  // Adds the output to the rows; only samples in their part count in the result. False: the sample is a
+  // duplicate or out of order.
+  bool run(const Reading& reading, double time_s);
+  void discontinuity() { incrementer_->discontinuity(); }
+  OfflineResult finish();
+
+ private:
+  void describe();
+  // Says if the samples since the last call count in the result.
+  void count(bool counts);
+
+  std::string model_path_;
+  DenoisedRows& rows_;
+  std::optional<Incrementer> incrementer_;
+  std::optional<SignalChain> chain_;
+  Increment increment_;
+  ChainOutput out_;
+  std::optional<std::uint64_t> first_sequence_;
+  std::uint64_t sequence_shift_ = 0;
+  OfflineResult result_;
+  IncrementerCounts counted_;  // of this incrementer, by count()
+  bool counts_ = true;         // for the last sample
+};
 
 }  // namespace ifog::tools

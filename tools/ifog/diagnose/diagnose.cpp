@@ -9,18 +9,16 @@
 
 #include "drivers/capture/files/output_file.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/model_axes.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/diagnose/axis_diagnosis.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
-#include "tools/ifog/tune/noise_left.h"
+#include "tools/ifog/tune/noise_at_rest.h"
 
 namespace ifog::tools {
 namespace {
@@ -100,32 +98,29 @@ void add_diagnose(const Command& program) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   const Command command =
       program.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
-  command.add_option("capture", arguments->captures, "captures of one sensor, fitted together").required();
+  command.add_option("capture", arguments->captures, "captures of one sensor, fitted together",
+                     {.required = true});
   arguments->input.add_to(command);
   arguments->part.add_to(command);
   command.add_option("--axis", arguments->wanted.axes, "only these axes");
   command.add_option("--model", arguments->model, "correct with this model first; find what it leaves");
-  command
-      .add_option("--since-power-up", arguments->since_power_up_s,
-                  "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
-                  "and one that is found counts from power-up; default: as a recording says it")
-      .not_negative();
+  command.add_option(
+      "--since-power-up", arguments->since_power_up_s,
+      "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
+      "and one that is found counts from power-up; default: as a recording says it",
+      {.range = not_negative()});
   command.add_option("--write-model", arguments->write_model, "write the model with what was found");
   command.add_option("--json", arguments->json, "write the diagnosis as JSON");
   command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
-  command
-      .add_option("--significance", arguments->wanted.options.significance,
-                  "chance of a false effect, after correction for all tried")
-      .within(1e-9, 0.5)
-      .shows_default();
-  command
-      .add_option("--fit-from", arguments->wanted.options.fit_from,
-                  "fit from this share of each capture's time; the rest judges")
-      .within(0.0, 0.9);
-  command
-      .add_option("--fit-to", arguments->wanted.options.fit_to,
-                  "fit up to this share of each capture's time; the rest judges")
-      .within(0.1, 1.0);
+  command.add_option("--significance", arguments->wanted.options.significance,
+                     "chance of a false effect, after correction for all tried",
+                     {.shows_default = true, .range = within(1e-9, 0.5)});
+  command.add_option("--fit-from", arguments->wanted.options.fit_from,
+                     "fit from this share of each capture's time; the rest judges",
+                     {.range = within(0.0, 0.9)});
+  command.add_option("--fit-to", arguments->wanted.options.fit_to,
+                     "fit up to this share of each capture's time; the rest judges",
+                     {.range = within(0.1, 1.0)});
   arguments->wanted.add_earth_to(command);
   command.add_flag("--allow-motion-channels", arguments->wanted.options.allow_motion_channels,
                    "without a reference rate, too, trace error to channels that sense motion: what they "

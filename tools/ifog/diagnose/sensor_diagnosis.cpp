@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <exception>
 #include <filesystem>
 #include <list>
-#include <mutex>
 #include <numeric>
 #include <stdexcept>
 
@@ -18,18 +15,16 @@
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/steps.h"
-#include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
-#include "filters/series/finite_sum.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {
@@ -118,55 +113,15 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
     }
 }
 
-// Mean of the finite values; 0 if there are none.
-double mean_of(std::span<const double> values) {
-  const FiniteSum finite = finite_sum(values);
-  return finite.count > 0.0 ? finite.sum / finite.count : 0.0;
-}
-
-// Earth's rate in a triad at rest: the mean rate along the mean specific force is its vertical component, for
-// any mounting. "" unless there are three gyros and three accelerometers, and the mean is known to a latitude of
-// six degrees.
-std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiagnosis>& found,
-                          unsigned threads) {
-  if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
-  std::array<std::span<const double>, 6> columns;  // rates, then accelerations
-  for (std::size_t a = 0; a < 3; ++a) {
-    columns[a] = capture.rate_radps[a];
-    const auto accel = std::ranges::find(capture.channels, "accel_" + capture.axes[a] + "_mps2",
-                                         &CaptureView::Channel::name);
-    if (accel == capture.channels.end()) return "";
-    columns[3 + a] = accel->values;
-  }
-  std::array<double, 6> means{};
-  share_out(columns.size(), threads, [&](std::size_t c) { means[c] = mean_of(columns[c]); });
-  const std::span<const double> rate = std::span(means).first(3), force = std::span(means).last(3);
-  const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
-  if (g < 9.0 || g > 10.5) return "";
-  constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
-  const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
-  const std::vector<double> span_s{capture.time_s.back() - capture.time_s.front()};
-  double variance = 0.0;  // of the noisiest axis
-  for (const AxisDiagnosis& each : found)
-    variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
-  if (std::abs(up) > kEarth || variance > std::pow(0.1 * kEarth, 2)) return "";
-  return fmt::format(
-      "the rate along the mean specific force is {:.3f} °/h; if the sensor stood still, that is the "
-      "Earth's rate at latitude {:.2f}°",
-      up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
-}
-
 }  // namespace
 
 void AxesToDiagnose::add_earth_to(const Command& command) {
   command.add_flag("--earth", options.subtract_earth_rate,
                    "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
                    "otherwise it is shown");
-  command
-      .add_taken<double>(
-          "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
-          "of the captures, degrees: bounds what can be the Earth's rate")
-      .within(-90.0, 90.0);
+  command.add_taken<double>(
+      "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
+      "of the captures, degrees: bounds what can be the Earth's rate", {.range = within(-90.0, 90.0)});
 }
 
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,
@@ -196,28 +151,12 @@ auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   }
 }
 
-// Sum of the progress of several axes.
-class SharedProgress {
- public:
-  SharedProgress(const std::string& what, std::size_t axes, std::size_t each)
-      : done_(axes, 0), progress_(what, axes * each) {}
-  void at(std::size_t axis, std::size_t done) {
-    const std::lock_guard lock(guard_);
-    done_[axis] = done;
-    progress_.at(std::accumulate(done_.begin(), done_.end(), std::size_t{0}));
-  }
-
- private:
-  std::mutex guard_;
-  std::vector<std::size_t> done_;
-  Progress progress_;
-};
-
 std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& captures,
                                          const std::vector<std::string>& names,
                                          const std::vector<std::size_t>& axes, const AxesToDiagnose& wanted) {
   if (axes.empty()) return {};
-  SharedProgress progress("diagnose", axes.size(), wanted.options.most_effects + 1);
+  Progress progress("diagnose", axes.size() * (wanted.options.most_effects + 1));
+  std::vector<std::atomic<std::size_t>> steps(axes.size());  // done, by axis
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
   // One thread per axis: with two processors and two threads, the third axis would leave one idle.
@@ -225,7 +164,10 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
   share_out(axes.size(), threads, [&](std::size_t i) {
     DiagnoseOptions own = wanted.options;
     own.axis = found[i].axis = captures.front().axes[axes[i]];
-    own.progress = [&, i](std::size_t done, std::size_t) { progress.at(i, done); };
+    own.progress = [&, i](std::size_t done, std::size_t) {
+      steps[i] = done;
+      progress.at(std::accumulate(steps.begin(), steps.end(), std::size_t{0}));
+    };
     try {
       const std::vector<Record> records = records_of(captures, names, axes[i]);
       found[i].diagnosis = naming_a_capture(names, [&] { return diagnose(records, own); });
@@ -266,9 +208,6 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
               " was dropped: \" - \" in a name stands for a difference of two columns; another name "
               "(--column) makes it a channel");
     }
-  const std::string earth =
-      captures.size() == 1 ? vertical_rate(captures.front(), found, wanted.threads) : "";
-  if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   return found;
 }
 

@@ -3,6 +3,7 @@
 // the model that corrects them.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,6 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/diagnose/axis_diagnosis.h"
 
 namespace ifog::tools {
 
@@ -21,6 +21,11 @@ struct AxesToDiagnose {
 
   // Adds --earth and --latitude to a command; this must outlive it.
   void add_earth_to(const Command& command);
+};
+
+struct AxisDiagnosis {
+  std::string axis;  // "" for a single-axis sensor
+  Diagnosis diagnosis;
 };
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
@@ -42,5 +47,12 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
                              const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                              const std::vector<std::string>& hashes, const std::string& model_path,
                              const std::string& read_with);
+
+// Schema ifog.diagnosis/1. One axis: the keys of the schema at the top level. Several axes: effects, alternatives and noise of all
+// axes have an "axis", and the figures are objects by axis.
+nlohmann::ordered_json diagnosis_json(const std::vector<AxisDiagnosis>& axes);
+
+// For the console.
+std::string diagnosis_text(const AxisDiagnosis& axis);
 
 }  // namespace ifog::tools

@@ -13,11 +13,10 @@
 #include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/history.h"
@@ -211,12 +210,10 @@ void add_adopt(const Command& program) {
   auto arguments = std::make_shared<AdoptArguments>();
   const Command command = program.add_subcommand(
       "adopt", "Put a proposed model into use, and say whether its promise comes true");
-  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
+  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration", {.required = true});
   arguments->field.add_to(command);
-  command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not")
-      .within(0.0, 86400.0)
-      .shows_default()
-      .type_name("SECONDS");
+  command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not",
+                     {.shows_default = true, .type = "SECONDS", .range = within(0.0, 86400.0)});
   command.add_option("--json", arguments->json, "write what was promised and found as JSON");
   command.callback([arguments] { adopt(*arguments); });
 }
@@ -224,7 +221,7 @@ void add_adopt(const Command& program) {
 void add_revert(const Command& program) {
   auto arguments = std::make_shared<AdoptArguments>();
   const Command command = program.add_subcommand("revert", "Take the last adoption back");
-  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
+  command.add_option("sensor", arguments->sensor, "name in the daemon's configuration", {.required = true});
   arguments->field.add_to(command);
   command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1");
   command.callback([arguments] { revert(*arguments); });

@@ -17,22 +17,21 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
-#include "tools/ifog/captures/configured_files.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 
 void FieldOptions::add_to(const Command& command) {
   command.add_option("--config", config,
                      std::string("the daemon's configuration; default: ") + kServiceConfig);
-  command
-      .add_option(
-          "--state", state,
-          std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
-              kServiceState)
-      .type_name("FOLDER");
+  command.add_option(
+      "--state", state,
+      std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
+          kServiceState,
+      {.type = "FOLDER"});
 }
 
 std::string FieldOptions::as_typed() const {

@@ -4,16 +4,15 @@
 #include <filesystem>
 
 #include "daemon/state/state_folder.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr const char* kHistorySchema = "ifog.history/1";
+constexpr const char *kHistorySchema = "ifog.history/1", *kNightSchema = "ifog.night/1";
 constexpr const char* kAdopt = "adopt";
 
 struct HistoryFile {
@@ -25,6 +24,10 @@ template <typename Io, Is<HistoryFile> T>
 void fields(Io& io, T& of) {
   io("sensor", of.sensor);
   io("changes", of.changes);
+}
+
+std::string path_of(const std::string& state, const std::string& sensor) {
+  return (std::filesystem::path(state) / (sensor + ".night.json")).string();
 }
 
 }  // namespace
@@ -42,9 +45,8 @@ void fields(Io& io, T& of) {
 }
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
-  const std::optional<json> file = read_state_json(path(), kHistorySchema);
-  if (!file) return;
-  with_keys(path(), [&] { changes_ = from_json<std::vector<ModelChange>>(file->at("changes")); });
+  if (std::optional<HistoryFile> file = read_state<HistoryFile>(path(), kHistorySchema))
+    changes_ = std::move(file->changes);
 }
 
 // A revert undoes the latest adoption that is not reverted yet, like nested brackets.
@@ -98,6 +100,22 @@ std::string History::path() const { return (fs::path(state_) / (sensor_ + ".hist
 std::string History::kept_path(const ModelName& name) const {
   return (fs::path(state_) / (sensor_ + ".kept-" + fs::path(name.identity).filename().string() + ".toml"))
       .string();
+}
+
+template <typename Io, Is<Bookmark> T>
+void fields(Io& io, T& of) {
+  io("sensor", of.sensor);
+  io("until", of.until);
+  io("when", of.when);
+  io("said", of.said);
+}
+
+std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
+  return read_state<Bookmark>(path_of(state, sensor), kNightSchema);
+}
+
+void write_bookmark(const std::string& state, const Bookmark& bookmark) {
+  write_state_json(path_of(state, bookmark.sensor), kNightSchema, bookmark);
 }
 
 }  // namespace ifog::tools

@@ -19,23 +19,21 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/captures/model_axes.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
-#include "tools/ifog/field/bookmark.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/recorded.h"
 #include "tools/ifog/field/watch.h"
-#include "tools/ifog/tune/noise_left.h"
+#include "tools/ifog/tune/noise_at_rest.h"
 
 namespace ifog::tools {
 namespace {
@@ -353,15 +351,11 @@ void add_night(const Command& program) {
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
   arguments->field.add_to(command);
   command.add_option("--sensor", arguments->sensors, "only these sensors");
-  command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
-      .within(60.0, 1e7)
-      .shows_default()
-      .type_name("SECONDS");
-  command
-      .add_option("--most-bytes", arguments->most_bytes,
-                  "of recordings, the newest; a byte takes some four of memory")
-      .within(1e5, 1e12)
-      .shows_default();
+  command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s",
+                     {.shows_default = true, .type = "SECONDS", .range = within(60.0, 1e7)});
+  command.add_option("--most-bytes", arguments->most_bytes,
+                     "of recordings, the newest; a byte takes some four of memory",
+                     {.shows_default = true, .range = within(1e5, 1e12)});
   command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1");
   command.callback([arguments] { run_nights(*arguments); });
 }

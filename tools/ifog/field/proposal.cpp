@@ -11,14 +11,13 @@
 #include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char* kProposalSchema = "ifog.proposal/1";
 constexpr std::string_view kEnding = ".proposal.json";
@@ -123,15 +122,12 @@ void write_proposal(const std::string& state, const Proposal& proposal, const Mo
 
 std::optional<Proposal> read_proposal(const std::string& state, const std::string& sensor) {
   const std::string path = index_path(state, sensor);
-  const std::optional<json> index = read_state_json(path, kProposalSchema);
-  if (!index) return std::nullopt;
-  return with_keys(path, [&]() -> std::optional<Proposal> {
-    auto out = from_json<Proposal>(*index);
-    if (out.sensor != sensor) throw refusal("{}: belongs to another sensor", path);
-    require_plain_name(out.model_file, path);
-    require_plain_name(out.report_file, path);
-    return out;
-  });
+  std::optional<Proposal> out = read_state<Proposal>(path, kProposalSchema);
+  if (!out) return out;
+  if (out->sensor != sensor) throw refusal("{}: belongs to another sensor", path);
+  require_plain_name(out->model_file, path);
+  require_plain_name(out->report_file, path);
+  return out;
 }
 
 Model proposed_model(const std::string& state, const Proposal& proposal) {

@@ -12,7 +12,7 @@
 
 #include "filters/model_file/model.h"
 #include "filters/promise/promise.h"
-#include "tools/ifog/console/listed_fields.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/field/field.h"
 
 namespace ifog::tools {

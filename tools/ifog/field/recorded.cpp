@@ -13,9 +13,9 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/model_axes.h"
-#include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/captures/long_capture.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/progress.h"
 
 namespace ifog::tools {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog status: all sensors of this computer's daemon on one screen.
+// ifog status: the sensors of this computer's daemon. ifog proposals: models found at night, not adopted.
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,13 +17,14 @@
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/hertz.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
-#include "tools/ifog/field/live_status.h"
+#include "tools/ifog/field/proposal.h"
 #include "tools/ifog/field/status_text.h"
 
 namespace ifog::tools {
@@ -288,6 +290,55 @@ void show_status(const StatusArguments& arguments) {
                             {"sensors", sensors}});
 }
 
+struct ProposalsArguments {
+  FieldOptions field;
+  std::string json;
+};
+
+// Reason why `adopt` would refuse it; "": none.
+std::string why_stale(const Field& field, const Proposal& proposal) {
+  if (field.config() == nullptr) return "";
+  for (const SensorConfig& sensor : field.config()->sensors)
+    if (sensor.name == proposal.sensor)
+      return model_in_use(field, sensor).name != proposal.against ? ", which is no longer in use" : "";
+  return "; " + field.config_path() + " has no such sensor";
+}
+
+void list_proposals(const ProposalsArguments& arguments) {
+  will_write("--json", arguments.json, kJsonEndings);
+  const Field field(arguments.field);
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  bool damaged = false, any = false;
+  for (const std::string& name : sensors_with_proposal(field.state())) {
+    try {
+      const std::optional<Proposal> found = read_proposal(field.state(), name);
+      if (!found) continue;  // adopted meanwhile
+      any = true;
+      const std::string why_not = why_stale(field, *found);
+      const std::string report = (std::filesystem::path(field.state()) / found->report_file).string();
+      say("{}  of {} against model {}{}{}\n  {}\n  report {}\n", name, printable(found->made),
+          found->against.identity.empty() ? "none" : printable(found->against.identity), printable(why_not),
+          why_not.empty() ? "" : ": not to be adopted", printable(found->why, kLongestMessage), report);
+      if (why_not.empty()) say("  adopt with: {}\n", field.command("adopt", name));
+      all.push_back({{"sensor", name},
+                     {"made", found->made},
+                     {"why", found->why},
+                     {"against", found->against.identity},
+                     {"model", found->model.identity},
+                     {"stale", !why_not.empty()},
+                     {"report", report},
+                     {"gain", as_json(found->gain)}});
+    } catch (const std::exception& error) {
+      warn("{}\n", error.what());
+      damaged = true;
+    }
+  }
+  if (!any && !damaged) say("no proposal waits in {}\n", field.state());
+  if (!arguments.json.empty())
+    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
+  if (damaged) throw Failed("damaged");
+}
+
 }  // namespace
 
 void add_status(const Command& program) {
@@ -295,14 +346,21 @@ void add_status(const Command& program) {
   const Command command = program.add_subcommand(
       "status", "All sensors of this computer's daemon: state, losses, model, proposal");
   arguments->field.add_to(command);
-  command.add_option("--wait", arguments->wait_s, "wait for the daemon's answer at most so long, s")
-      .within(0.1, 3600.0)
-      .shows_default()
-      .type_name("SECONDS");
+  command.add_option("--wait", arguments->wait_s, "wait for the daemon's answer at most so long, s",
+                     {.shows_default = true, .type = "SECONDS", .range = within(0.1, 3600.0)});
   command.add_flag("-c,--csv", arguments->csv,
                    "a line a sensor as CSV, for scripts, with the names of its columns first");
   command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
   command.callback([arguments] { show_status(*arguments); });
+}
+
+void add_proposals(const Command& program) {
+  auto arguments = std::make_shared<ProposalsArguments>();
+  const Command command =
+      program.add_subcommand("proposals", "List the models that the nights have proposed");
+  arguments->field.add_to(command);
+  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
+  command.callback([arguments] { list_proposals(*arguments); });
 }
 
 }  // namespace ifog::tools

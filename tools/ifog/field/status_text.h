@@ -57,4 +57,10 @@ inline std::string axis_health(const std::vector<double>& nis, const std::vector
   return out;
 }
 
+// A rate with one decimal, or with two significant digits below 1 Hz.
+inline std::string in_hertz(double rate_hz) {
+  return rate_hz > 0.0 && rate_hz < 1.0 ? fmt::format("{:.2g} Hz", rate_hz)
+                                        : fmt::format("{:.1f} Hz", rate_hz);
+}
+
 }  // namespace ifog::tools

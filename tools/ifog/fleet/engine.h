@@ -31,17 +31,9 @@ class Engine {
   [[nodiscard]] virtual std::string in_words(const std::vector<std::size_t>& gyros) const = 0;
 };
 
-// jobs: in parallel; 0: one per processor.
-std::unique_ptr<Engine> local_engine(const Results& results, std::size_t jobs);
-
-// jobs: in parallel; 0: no limit. Partition, memory and time are set by Slurm's defaults and the environment
-// of sbatch (SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_MEM_PER_CPU).
-std::unique_ptr<Engine> slurm_engine(const Results& results, std::size_t jobs);
-
-// The command for one gyro. The index precedes the typed words, because a `--` there ends the options.
-std::vector<std::string> command_for_one(const std::string& index);
-
-// The same for a shell; all words except `index` are quoted where necessary.
-std::string shell_command_for_one(const std::string& index);
+// name: "local", "slurm", or "auto", which takes Slurm where it answers. jobs: in parallel; 0: one per processor,
+// with Slurm no limit. Its partition, memory and time are set by Slurm's defaults and the environment of sbatch
+// (SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_MEM_PER_CPU).
+std::unique_ptr<Engine> engine_named(const std::string& name, const Results& results, std::size_t jobs);
 
 }  // namespace ifog::tools

@@ -2,7 +2,6 @@
 // ifog fleet: diagnoses all gyros of a type, on this computer or on a cluster; then estimates the type's
 // properties and improves each gyro's model with them.
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -17,18 +16,15 @@
 #include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
-#include "tools/ifog/fleet/fleet_json.h"
 #include "tools/ifog/fleet/gather.h"
 #include "tools/ifog/fleet/gyro_work.h"
-#include "tools/ifog/fleet/process.h"
-#include "tools/ifog/fleet/with_prior.h"
 #include "tools/report/pages/fleet_page.h"
 
 namespace ifog::tools {
@@ -45,14 +41,6 @@ struct FleetArguments {
   FleetSettings settings;
 };
 
-std::unique_ptr<Engine> engine_named(const FleetArguments& arguments, const Results& results) {
-  // An installed Slurm may have no controller.
-  const bool slurm = arguments.engine == "slurm" ||
-                     (arguments.engine == "auto" && is_there("sbatch") &&
-                      run_to_end({"sinfo", "--noheader"}, "", std::chrono::seconds(10)).ended.empty());
-  return slurm ? slurm_engine(results, arguments.jobs) : local_engine(results, arguments.jobs);
-}
-
 class FleetRun {
  public:
   FleetRun(const FleetArguments& arguments, const Manifest& manifest, const Results& results)
@@ -60,7 +48,7 @@ class FleetRun {
         results_(results),
         options_(arguments.settings.text()),
         level_(arguments.settings.wanted.options.significance),
-        engine_(engine_named(arguments, results)) {
+        engine_(engine_named(arguments.engine, results, arguments.jobs)) {
     population_.type = type_.type = manifest.type;
     population_.significance = level_;
     for (const FleetGyro& gyro : manifest.gyros) population_.serials.push_back(gyro.serial);
@@ -265,15 +253,6 @@ class FleetRun {
   Population population_;
 };
 
-// SIGHUP interrupts too unless it is ignored, as by nohup.
-void end_with_the_terminal() {
-  struct sigaction interrupt {
-  }, hangup{};
-  sigaction(SIGINT, nullptr, &interrupt);
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
-}
-
 void run_fleet(const FleetArguments& arguments) {
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
@@ -294,7 +273,6 @@ void run_fleet(const FleetArguments& arguments) {
     return;
   }
   catch_interrupts();
-  end_with_the_terminal();
   fleet.run();
 }
 
@@ -304,31 +282,26 @@ void add_fleet(const Command& program) {
   auto arguments = std::make_shared<FleetArguments>();
   const Command command = program.add_subcommand(
       "fleet", "Diagnose every gyro of a type, then the type: effects, spread, outliers");
-  command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
-      .required();
+  command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)",
+                     {.required = true});
   command.add_option("--results", arguments->results,
                      "folder of results; otherwise next to the manifest, under its name with .results");
-  command
-      .add_option("--engine", arguments->engine,
-                  "who runs the diagnoses: auto takes slurm where there is an sbatch")
-      .one_of({"auto", "local", "slurm"})
-      .shows_default();
-  command
-      .add_option("--jobs", arguments->jobs,
-                  "gyros at once; otherwise a processor each, or as many as Slurm gives")
-      .within(1, 100000);
+  command.add_option("--engine", arguments->engine,
+                     "who runs the diagnoses: auto takes slurm where there is an sbatch",
+                     {.shows_default = true, .choices = {"auto", "local", "slurm"}});
+  command.add_option("--jobs", arguments->jobs,
+                     "gyros at once; otherwise a processor each, or as many as Slurm gives",
+                     {.range = within(1, 100000)});
   command.add_flag("--dry-run", arguments->dry_run,
                    "print what would be run for the gyros not yet diagnosed");
-  command.add_option("--one", arguments->one, "only what is missing of this gyro, counted from 0")
-      .type_name("INDEX");
+  command.add_option("--one", arguments->one, "only what is missing of this gyro, counted from 0",
+                     {.type = "INDEX"});
   arguments->settings.input.add_to(command);
   arguments->settings.part.add_to(command);
   command.add_option("--axis", arguments->settings.wanted.axes, "only these axes");
-  command
-      .add_option("--significance", arguments->settings.wanted.options.significance,
-                  "chance of a false effect in a gyro, after correction for all tried")
-      .within(1e-9, 0.5)
-      .shows_default();
+  command.add_option("--significance", arguments->settings.wanted.options.significance,
+                     "chance of a false effect in a gyro, after correction for all tried",
+                     {.shows_default = true, .range = within(1e-9, 0.5)});
   arguments->settings.wanted.add_earth_to(command);
   command.footer("Example:\n  ifog fleet lot7.toml --jobs 8");
   command.callback([arguments] { run_fleet(*arguments); });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the properties of a type from the results of its gyros.
+// Computes the properties of a type from the results of its gyros, and improves their models with them.
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,5 +48,14 @@ bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
 
 // A value per gyro for each effect of the type.
 std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects);
+
+// Schema ifog.fleet/1.
+nlohmann::ordered_json fleet_json(const Population& population);
+
+// The gyro's model with the type's effects that it has, and without those it does not have. Coefficients that
+// were fitted with them are conditional on the type's distribution; lines, tables and other parts are
+// unchanged. Sets with_prior of `effects` for this gyro.
+Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMeasured& measured,
+                       std::size_t gyro, std::vector<TypeEffect>& effects);
 
 }  // namespace ifog::tools

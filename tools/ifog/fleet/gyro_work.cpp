@@ -11,9 +11,8 @@
 #include "drivers/capture/files/output_file.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/naming.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/fleet/results.h"
 

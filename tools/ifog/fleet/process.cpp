@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "drivers/system/fd.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 namespace {

@@ -13,8 +13,8 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

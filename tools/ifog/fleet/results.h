@@ -18,7 +18,7 @@
 #include "filters/diagnosis/measure.h"
 #include "filters/model_file/model.h"
 #include "filters/population/type_effects.h"
-#include "tools/ifog/console/listed_fields.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/fleet/manifest.h"
 
 namespace ifog::tools {

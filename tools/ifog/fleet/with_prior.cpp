@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/fleet/with_prior.h"
+#include "tools/ifog/fleet/gather.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/monitor/view_lines.h"
+#include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
 

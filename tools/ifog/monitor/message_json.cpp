@@ -8,7 +8,7 @@
 #include "msgs/counters.h"
 #include "msgs/flag_names.h"
 #include "msgs/state_name.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 
 namespace ifog::tools {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/monitor/monitor.h"
 
+#include <ifog/decode.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include <ifog/decode.h>
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -19,13 +20,14 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 
 namespace ifog::tools {
+
 Monitor::Monitor(const MonitorOptions& options)
     : options_(options),
       listener_(options.url, [this](const lcm_recv_buf_t& message,
@@ -185,25 +187,24 @@ void add_monitor(const Command& program) {
   const Command command = program.add_subcommand("monitor", "Show live what the daemon publishes");
   auto options = std::make_shared<MonitorOptions>();
   command.add_option("--sensor", options->sensor, "Only this sensor");
-  command.add_option("--seconds", options->seconds, "Stop after this long").positive();
+  command.add_option("--seconds", options->seconds, "Stop after this long", {.range = positive()});
   command.add_flag("--once", options->once, "Stop after one second of data of every sensor");
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
   command.add_option(
       "--json", options->json,
       "Instead of the figures every message as a line of JSON to this file; - is standard output");
-  command
-      .add_option("--web", options->web,
-                  "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
-                  "address of this computer")
-      .type_name("[ADDRESS:]PORT")
-      .check([](const std::string& text) -> std::string {
-        return page_address(text)
-                   ? ""
-                   : "is " + in_quotes(text) +
-                         ", expected a port 1 ... 65535, or ADDRESS:PORT with a numeric address";
-      });
+  command.add_option(
+      "--web", options->web,
+      "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
+      "address of this computer",
+      {.type = "[ADDRESS:]PORT", .check = [](const std::string& text) -> std::string {
+         return page_address(text)
+                    ? ""
+                    : "is " + in_quotes(text) +
+                          ", expected a port 1 ... 65535, or ADDRESS:PORT with a numeric address";
+       }});
   options->field.add_to(command);
-  command.add_option("--lcm-url", options->url, "As in the daemon's configuration").type_name("URL");
+  command.add_option("--lcm-url", options->url, "As in the daemon's configuration", {.type = "URL"});
   command.callback([options] {
     if (options->once && !options->web.empty())
       throw WrongUsage("--once", "with --web, whose page is shown until it is ended");
@@ -221,6 +222,110 @@ void add_monitor(const Command& program) {
       throw Failed("nothing heard");
     }
   });
+}
+
+// "": none.
+std::string Monitor::who_publishes() const {
+  std::string out;
+  for (const std::string& name : others_) out += (out.empty() ? "" : ", ") + printable(name);
+  return out;
+}
+
+// The sensor or network that is waited for, and for how long.
+std::vector<std::string> Monitor::waiting() const {
+  const std::string wanted =
+      options_.sensor.empty() ? "a sensor's messages (IFOG_*)" : in_quotes(options_.sensor);
+  return {"waiting for " + wanted + " on " + printable(options_.url) + ",",
+          std::to_string(static_cast<int>(seconds_since(last_data_))) + " s: nothing heard"};
+}
+
+std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
+  constexpr double kSilent_s = 1.5;
+  std::vector<ShownLine> out;
+  for (const auto& [name, sensor] : look_.paused ? *look_.paused : sensors_) {
+    if (!look_.only.empty() && name != look_.only) continue;
+    if (!out.empty() && screen_) out.emplace_back();
+    std::vector<ShownLine> of_sensor = view_lines(name, sensor, style, known_.of(name));
+    std::move(of_sensor.begin(), of_sensor.end(), std::back_inserter(out));
+  }
+  if (refused_ > 0)
+    out.push_back({std::to_string(refused_) + " messages that are none of ours, or damaged", Tone::warning});
+  if (crowded_ > 0)
+    out.push_back({std::to_string(crowded_) + " messages of more sensors than " +
+                       std::to_string(kMostSensors) + ", which are shown",
+                   Tone::warning});
+  if (!screen_ || look_.paused || (!sensors_.empty() && seconds_since(last_data_) <= kSilent_s)) return out;
+  std::vector<ShownLine> all;
+  const auto add = [&](const std::vector<std::string>& parts, Tone tone) {
+    for (std::string& line : wrapped(parts, " ", style.width)) all.push_back({std::move(line), tone});
+  };
+  add(waiting(), Tone::bad);
+  std::move(out.begin(), out.end(), std::back_inserter(all));
+  if (const std::string others = who_publishes(); sensors_.empty() && !others.empty())
+    add({"These publish:", others}, Tone::plain);
+  else if (sensors_.empty())
+    add({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
+         "ip route add 224.0.0.0/4 dev lo"},
+        Tone::plain);
+  return all;
+}
+
+std::string Monitor::foot() const {
+  return std::string(look_.paused ? " PAUSED " : "") +
+         " q quit  space pause  d details  u unit  s sensor  r losses from now  ↑↓ scroll";
+}
+
+void Monitor::draw() {
+  look_.style.width = screen_->width();
+  screen_->draw(
+      look_.help
+          ? std::vector<
+                ShownLine>{{"ifog monitor"},
+                           {""},
+                           {"  q, escape   quit"},
+                           {"  space, p    pause: the figures stand still, nothing is lost"},
+                           {"  d           details: latency, books, channels, NIS"},
+                           {"  u           unit: as it suits, °/h, °/s, rad/s"},
+                           {"  s, tab      one sensor after the other, then all"},
+                           {"  r           count losses from now on"},
+                           {"  ↑ ↓ j k     scroll, page up and down"},
+                           {""},
+                           {"  noise is the standard deviation within a second; the line at the"},
+                           {"  right is the denoised rate, a second a column, and span its height."},
+                           {"  Flags are counted in messages of the last second. Any other key goes back."}}
+          : lines(look_.style),
+      foot());
+}
+
+bool Monitor::obey(int key) {
+  constexpr int kEscape = 27;
+  if (key == 'q' || key == 'Q' || key == kEscape) return false;
+  if (std::exchange(look_.help, false)) return true;
+  switch (key) {
+    case ' ':
+    case 'p':
+      look_.paused = look_.paused ? std::nullopt : std::optional(sensors_);
+      break;
+    case 'd':
+      look_.style.details = !look_.style.details;
+      break;
+    case 'u':
+      look_.style.unit = static_cast<RateUnit>((static_cast<int>(look_.style.unit) + 1) % 4);
+      break;
+    case 's':
+    case '\t': {
+      const auto next = look_.only.empty() ? sensors_.begin() : sensors_.upper_bound(look_.only);
+      look_.only = next == sensors_.end() ? "" : next->first;
+      break;
+    }
+    case 'r':
+      for (auto& [name, sensor] : sensors_) sensor.forget_losses();
+      refused_ = 0;
+      break;
+    default:
+      look_.help = true;
+  }
+  return true;
 }
 
 }  // namespace ifog::tools

@@ -17,7 +17,6 @@
 #include "tools/ifog/monitor/known_here.h"
 #include "tools/ifog/monitor/screen.h"
 #include "tools/ifog/monitor/sensor_view.h"
-#include "tools/ifog/monitor/view_lines.h"
 #include "tools/ifog/monitor/web_monitor.h"
 
 namespace ifog::tools {

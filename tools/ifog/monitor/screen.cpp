@@ -14,7 +14,7 @@
 #include <cwchar>
 #include <utility>
 
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

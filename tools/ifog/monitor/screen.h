@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ifog/monitor/view_lines.h"
+#include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
 

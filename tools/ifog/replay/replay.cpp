@@ -22,10 +22,10 @@
 #include "drivers/transport/file/pace.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/replay/replay_target.h"
@@ -201,48 +201,40 @@ void add_replay(const Command& program) {
   const Command command =
       program.add_subcommand("replay", "Send a recording to a device, as it was recorded");
   ReplaySource& source = settings->source;
-  command
-      .add_option("capture", source.path,
-                  "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
-      .required();
-  command
-      .add_taken<std::string>(
-          "--to", [settings](const std::string& text) { settings->to = ReplayDestination::parse(text); },
-          "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
-          "fifo:PATH or - (standard output)")
-      .required();
-  command.add_option("--format", source.format, "of the recording")
-      .one_of({"auto", "candump", "bytes", "csv"})
-      .shows_default();
-  command.add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible")
-      .not_negative()
-      .shows_default();
-  command.add_option("--loop", settings->loops, "how often; 0: for ever").shows_default();
+  command.add_option("capture", source.path,
+                     "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)",
+                     {.required = true});
+  command.add_taken<std::string>(
+      "--to", [settings](const std::string& text) { settings->to = ReplayDestination::parse(text); },
+      "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
+      "fifo:PATH or - (standard output)",
+      {.required = true});
+  command.add_option("--format", source.format, "of the recording",
+                     {.shows_default = true, .choices = {"auto", "candump", "bytes", "csv"}});
+  command.add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible",
+                     {.shows_default = true, .range = not_negative()});
+  command.add_option("--loop", settings->loops, "how often; 0: for ever", {.shows_default = true});
   command.add_flag("--realtime", settings->realtime, "try SCHED_FIFO and locked memory");
-  command.add_option("--spin", settings->spin_us, "µs before each deadline spent awake")
-      .not_negative()
-      .shows_default();
+  command.add_option("--spin", settings->spin_us, "µs before each deadline spent awake",
+                     {.shows_default = true, .range = not_negative()});
   command.add_option("--block", source.block_bytes, "raw bytes: bytes sent together, a frame of the device");
-  command.add_option("--rate", source.rate_hz, "raw bytes: blocks a second").positive();
+  command.add_option("--rate", source.rate_hz, "raw bytes: blocks a second", {.range = positive()});
   source.input.add_to(command);
   command.add_option("--axis", source.axis, "CSV of one axis: the driver's axis it goes to");
   command.add_option("--baud", settings->line.baud, "serial: speed, else the driver's");
   command.add_option("--baud-base", settings->line.baud_base,
                      "serial: the UART's clock / 16, where the driver has it wrong");
-  command.add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character")
-      .within(5, 8)
-      .shows_default();
-  command
-      .add_taken<std::string>(
-          "--parity",
-          [settings](const std::string& word) {
-            settings->line.parity = word == "even"  ? SerialSettings::Parity::even
-                                    : word == "odd" ? SerialSettings::Parity::odd
-                                                    : SerialSettings::Parity::none;
-          },
-          "serial: none unless given")
-      .one_of({"none", "even", "odd"});
-  command.add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2").within(1, 2).shows_default();
+  command.add_option("--data-bits", settings->line.data_bits, "serial: 5 to 8 bits a character",
+                     {.shows_default = true, .range = within(5, 8)});
+  command.add_taken<std::string>("--parity",
+                                 [settings](const std::string& word) {
+                                   settings->line.parity = word == "even"  ? SerialSettings::Parity::even
+                                                           : word == "odd" ? SerialSettings::Parity::odd
+                                                                           : SerialSettings::Parity::none;
+                                 },
+                                 "serial: none unless given", {.choices = {"none", "even", "odd"}});
+  command.add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2",
+                     {.shows_default = true, .range = within(1, 2)});
   command.add_option("--json", settings->json, "write the report to this file");
   command.callback([settings] { run(*settings); });
 }

@@ -14,8 +14,8 @@
 #include "drivers/timeline/timeline.h"
 #include "filters/series/median_step.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -27,18 +27,16 @@
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/model_axes.h"
-#include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/json_file.h"
-#include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/tune/rest_columns.h"
+#include "tools/ifog/tune/noise_at_rest.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
@@ -323,23 +321,21 @@ void add_tune(const Command& program) {
       program.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture at rest").required();
+  command.add_option("capture", options->capture, "a capture at rest", {.required = true});
   command.add_option("--model", options->model,
                      "correct with this model first; its effects stay in what is written");
-  command
-      .add_option(
-          "--since-power-up", options->since_power_up_s,
-          "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
-          "a recording says it")
-      .not_negative();
+  command.add_option(
+      "--since-power-up", options->since_power_up_s,
+      "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
+      "a recording says it",
+      {.range = not_negative()});
   command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
   command.add_option("--json", options->json_file, "write the figures as JSON");
   // One per option, so that a following capture is not read as a state model.
-  command.add_option("--state", options->states, "state models to try; may stand several times")
-      .one_value_each();
-  command.add_option("--samples", options->samples, "most rows of the capture to fit")
-      .within(200, 100000000)
-      .shows_default();
+  command.add_option("--state", options->states, "state models to try; may stand several times",
+                     {.one_value_each = true});
+  command.add_option("--samples", options->samples, "most rows of the capture to fit",
+                     {.shows_default = true, .range = within(200, 100000000)});
   options->input.add_to(command);
   options->part.add_to(command);
   command.callback([options] { run_tune(*options); });

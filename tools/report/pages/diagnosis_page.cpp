@@ -11,7 +11,6 @@
 #include "filters/model_file/toml_text.h"
 #include "filters/units/field_units.h"
 #include "tools/report/coefficients.h"
-#include "tools/report/pages/account.h"
 #include "tools/report/pages/diagnosis_pictures.h"
 #include "tools/report/pages/section.h"
 #include "tools/report/pages/words.h"

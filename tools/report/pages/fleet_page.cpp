@@ -9,7 +9,6 @@
 
 #include "drivers/ifog/quoted.h"
 #include "tools/report/chart.h"
-#include "tools/report/pages/account.h"
 #include "tools/report/pages/section.h"
 #include "tools/report/pages/words.h"
 #include "tools/report/text.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/style.h"
+#include "tools/report/picture.h"
 
 namespace ifog::report {
 

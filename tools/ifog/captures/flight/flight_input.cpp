@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
+#include "drivers/host/driver_instance.h"
 #include "drivers/system/unnamed_file.h"
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/naming.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -39,6 +41,19 @@ void add(const ifog_driver_counters& from, ifog_driver_counters& to) {
         &ifog_driver_counters::bytes_framed, &ifog_driver_counters::bytes_pending,
         &ifog_driver_counters::values_refused, &ifog_driver_counters::frames_other})
     to.*count += from.*count;
+}
+
+// If the driver is not installed here, it reads no file.
+void will_read_options_of(const SensorConfig& sensor, const std::vector<std::string>& folders) {
+  std::shared_ptr<const Plugin> plugin;
+  try {
+    plugin = find_plugin(sensor.driver, folders);
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  const DriverSettings options = with_files_in(sensor.folder, plugin->table(), sensor.options);
+  for (const std::string& key : file_settings(plugin->table(), options))
+    will_read("the configuration's option " + key + " of sensor " + sensor.name, options.at(key));
 }
 
 }  // namespace
@@ -207,6 +222,18 @@ void FlightInput::for_each_entry(const std::function<void(const FlightEntry&)>& 
       if (item == FlightReader::Item::entry) sink(reader_.entry());
     tell_losses();
   });
+}
+
+void will_read_files_of(const Config& config) {
+  const std::vector<std::string> folders = plugin_folders(config.plugin_folders);
+  for (const SensorConfig& sensor : config.sensors) {
+    will_read("the configuration's model", sensor.model);
+    will_read("the configuration's transport of sensor " + sensor.name, sensor.transport.file.path);
+    for (const ChannelConfig& channel : sensor.channels)
+      for (const std::string& path : {channel.path, channel.dbc})
+        will_read("the configuration's channel " + channel.name, path);
+    will_read_options_of(sensor, folders);
+  }
 }
 
 }  // namespace ifog::tools

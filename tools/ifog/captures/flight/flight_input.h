@@ -75,4 +75,8 @@ class FlightInput {
   const SensorConfig* configured_ = nullptr;
 };
 
+// Registers the files that a daemon's configuration names as inputs of the run (command_files.h): models, files named by drivers' options, and devices
+// or channels that are files. Throws WrongUsage as will_read() does.
+void will_read_files_of(const Config& config);
+
 }  // namespace ifog::tools

@@ -11,7 +11,7 @@
 
 #include "drivers/capture/recording.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

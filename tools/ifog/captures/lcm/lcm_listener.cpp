@@ -7,8 +7,7 @@
 
 #include "daemon/config/lcm_url.h"
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/command_errors.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 

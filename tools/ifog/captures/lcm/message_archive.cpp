@@ -7,7 +7,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
-#include "tools/ifog/console/refusal.h"
+#include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
 

@@ -3,15 +3,15 @@
 // headers contain the whole parser.
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <memory>
+#include <limits>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 namespace ifog::tools {
@@ -19,43 +19,34 @@ namespace ifog::tools {
 // Returns "" or the error in a value.
 using Complaint = std::function<std::string(const std::string& value)>;
 
-// Rule for an option's values; see checked_values.h.
-class ValueRule;
+// Decimal and finite, as in drivers/ifog/decimal.h; otherwise nullopt.
+std::optional<double> number_in(const std::string& text);
 
-// Handle of an option; valid as long as the command line. Help and error messages come from one rule.
-class Option {
- public:
-  explicit Option(CLI::Option& option, std::shared_ptr<ValueRule> rule = nullptr)
-      : option_(&option), rule_(std::move(rule)) {}
+// Whole and within 64 bits, signed; otherwise nullopt. (The parser would clamp larger numbers.)
+std::optional<std::int64_t> whole_in(const std::string& text);
 
-  Option required() const;
-  // Sets the value's name in the help.
-  Option type_name(const std::string& word) const;
-  // Shows the present value of the variable as default.
-  Option shows_default() const;
-  Option group(const std::string& heading) const;
-  // Separator of several values in one word.
-  Option delimiter(char between) const;
-  // Each value needs the option again: the next word is not a value.
-  Option one_value_each() const;
+// Limits of a number, both allowed unless `without_least`, and their words in the help and in errors.
+struct ValueRange {
+  double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+  bool without_least = false;
+  std::string words{};  // "more than 0", "1 to 1000"
+};
+ValueRange positive();
+ValueRange not_negative();
+ValueRange within(double least, double most);
+ValueRange within(int least, int most);
 
-  Option positive() const;
-  Option not_negative() const;
-  // Both limits are allowed.
-  Option within(double least, double most) const;
-  Option within(int least, int most) const;
-  // The help shows them as a|b instead of a value's name.
-  Option one_of(const std::vector<std::string>& words) const;
-  Option check(Complaint complaint) const;
-
-  // True if it is on the command line.
-  [[nodiscard]] bool given() const;
-
- private:
-  [[nodiscard]] Option ranged(double least, double most, bool without_least, const std::string& words) const;
-
-  CLI::Option* option_;
-  std::shared_ptr<ValueRule> rule_;  // null: a flag
+// What an option allows besides the type of its variable, and how the help shows it.
+struct OptionRule {
+  bool required = false;
+  bool shows_default = false;   // the present value of the variable
+  bool one_value_each = false;  // each value needs the option again: the next word is not a value
+  std::string type{};           // the value's name in the help; "": by its own name and the variable's type
+  std::string group{};          // its heading in the help
+  char delimiter = '\0';        // of several values in one word
+  ValueRange range{};
+  std::vector<std::string> choices{};  // shown as a|b instead of a value's name
+  Complaint check{};                   // before the others, because its message is more specific
 };
 
 // Handle of a command, or of the program with its commands.
@@ -68,13 +59,15 @@ class Command {
   // `value` must outlive the parse. A name without dashes is an argument. T: the types listed in command.cpp:
   // texts, numbers, and optional or several of them.
   template <typename T>
-  Option add_option(const std::string& names, T& value, const std::string& help) const;
-  Option add_flag(const std::string& names, bool& value, const std::string& help) const;
+  void add_option(const std::string& names, T& value, const std::string& help,
+                  const OptionRule& rule = {}) const;
+  void add_flag(const std::string& names, bool& value, const std::string& help) const;
   // Called with the value after the parse; may throw WrongUsage.
   template <typename T>
-  Option add_taken(const std::string& names, std::function<void(const T&)> take,
-                   const std::string& help) const;
-  Option add_flag_taken(const std::string& names, std::function<void()> take, const std::string& help) const;
+  void add_taken(const std::string& names, std::function<void(const T&)> take, const std::string& help,
+                 const OptionRule& rule = {}) const;
+  void add_flag_taken(const std::string& names, std::function<void()> take, const std::string& help,
+                      const std::string& group) const;
 
   // Text after the options in the help, e.g. examples.
   void footer(const std::string& text) const;

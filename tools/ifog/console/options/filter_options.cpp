@@ -11,7 +11,6 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
-#include "tools/ifog/console/options/checked_values.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
@@ -50,22 +49,24 @@ std::string complaint(const FilterSetting& setting, const std::string& text) {
 }
 
 template <typename T>
-Option add(const Command& command, const FilterSetting& setting, FilterChoice& choice) {
+void add(const Command& command, const FilterSetting& setting, FilterChoice& choice) {
+  constexpr const char* kGroup = "Filter";
   if constexpr (std::is_same_v<T, bool>) {
-    return command.add_flag_taken(
+    command.add_flag_taken(
         setting.option,
         [&setting, &choice] {
           const bool usual = std::get<bool>(value_of(setting, FilterSettings{}));
           static_cast<void>(choose(setting, !usual, choice));
         },
-        help(setting));
+        help(setting), kGroup);
   } else {
-    return command
-        .add_taken<Read<T>>(
-            setting.option,
-            [&setting, &choice](const Read<T>& value) { static_cast<void>(choose(setting, value, choice)); },
-            help(setting))
-        .check([&setting](const std::string& text) { return complaint<T>(setting, text); });
+    command.add_taken<Read<T>>(
+        setting.option,
+        [&setting, &choice](const Read<T>& value) { static_cast<void>(choose(setting, value, choice)); },
+        help(setting),
+        {.group = kGroup,
+         .delimiter = std::is_same_v<T, std::vector<double>> ? ',' : '\0',
+         .check = [&setting](const std::string& text) { return complaint<T>(setting, text); }});
   }
 }
 
@@ -74,11 +75,8 @@ Option add(const Command& command, const FilterSetting& setting, FilterChoice& c
 void add_filter_options(const Command& command, FilterChoice& choice, bool with_rule) {
   for (const FilterSetting& setting : filter_table()) {
     if (!with_rule && setting.key == std::string_view("rule")) continue;
-    const Option option =
-        std::visit([&]<typename T>(const SettingMember<T>&) { return add<T>(command, setting, choice); },
-                   setting.member);
-    option.group("Filter");
-    if (setting.key == std::string_view("state_parameters")) option.delimiter(',');
+    std::visit([&]<typename T>(const SettingMember<T>&) { add<T>(command, setting, choice); },
+               setting.member);
   }
 }
 

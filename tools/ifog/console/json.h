@@ -12,8 +12,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
+
+#include "drivers/capture/files/output_file.h"
 
 namespace ifog::tools {
 
@@ -117,6 +120,17 @@ T from_json(const nlohmann::json& json) {
   T out{};
   FieldsReader::read(json, out);
   return out;
+}
+
+// NaN and infinity become null, invalid UTF-8 in names from files U+FFFD. indent: −1 for a single line.
+template <typename Json>
+std::string json_text(const Json& json, int indent = 2) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+template <typename Json>
+void write_json(const std::string& path, const Json& json, int indent = 2) {
+  write_file(path, json_text(json, indent) + "\n");
 }
 
 }  // namespace ifog::tools
