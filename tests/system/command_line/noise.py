@@ -220,6 +220,20 @@ class Noise:
             refused(1, command, path, says=["mostly at rest", "ifog diagnose"])
         assert "ifog diagnose" in ifog("allan", path, "--minus-reference")
 
+    def check_a_triad_at_rest_tells_the_earths_rate(self):
+        """Mounted anyhow, at latitude 50° north: 15.041 °/h, of which 11.522 °/h are along the specific force."""
+        earth, up, north = 7.292115e-5, (0.48, 0.6, 0.64), (0.8, 0.0, -0.6)
+        sine, cosine = math.sin(math.radians(50)), math.cos(math.radians(50))
+        dice, rows = random.Random(6), ["time_s,rate_x_radps,rate_y_radps,rate_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2"]
+        for i in range(20_000):
+            rates = [earth * (sine * u + cosine * n) + dice.gauss(0, 1e-6) for u, n in zip(up, north)]
+            rows.append(",".join(map(repr, [i / 50, *rates, *(9.81 * u + dice.gauss(0, 1e-3) for u in up)])))
+        path = self.folder / "triad.csv"
+        path.write_text("\n".join(rows) + "\n")
+        said = re.search(r"specific force is ([\d.]+) °/h; .* latitude ([\d.]+)°", ifog("diagnose", path))
+        near(float(said[1]), 11.522, 0.01, "the vertical rate")
+        near(float(said[2]), 50.0, 0.1, "the latitude")
+
     def check_compare_says_what_moved_and_leaves_it_out_as_allan_does(self):
         """A turn in the middle: its time is printed, and std and deviation are those of allan's rest."""
         path = self.turned("turned.csv", 100, 148)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -15,9 +18,11 @@
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/steps.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
+#include "filters/series/finite_sum.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -111,6 +116,43 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
       throw refusal("{}: holds the same samples as {}{}, expected each record once", names[later], names[c],
                     where);
     }
+}
+
+// Mean of the finite values; 0 if there are none.
+double mean_of(std::span<const double> values) {
+  const FiniteSum finite = finite_sum(values);
+  return finite.count > 0.0 ? finite.sum / finite.count : 0.0;
+}
+
+// Earth's rate in a triad at rest: the mean rate along the mean specific force is its vertical component, for
+// any mounting. "" unless there are three gyros and three accelerometers, and the mean is known to a latitude of
+// six degrees.
+std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiagnosis>& found) {
+  if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
+  std::array<std::span<const double>, 6> columns;  // rates, then accelerations
+  for (std::size_t a = 0; a < 3; ++a) {
+    columns[a] = capture.rate_radps[a];
+    const auto accel = std::ranges::find(capture.channels, "accel_" + capture.axes[a] + "_mps2",
+                                         &CaptureView::Channel::name);
+    if (accel == capture.channels.end()) return "";
+    columns[3 + a] = accel->values;
+  }
+  std::array<double, 6> means{};
+  std::ranges::transform(columns, means.begin(), mean_of);
+  const std::span<const double> rate = std::span(means).first(3), force = std::span(means).last(3);
+  const double g = std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  if (g < 9.0 || g > 10.5) return "";
+  constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
+  const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
+  const std::vector<double> span_s{capture.time_s.back() - capture.time_s.front()};
+  double variance = 0.0;  // of the noisiest axis
+  for (const AxisDiagnosis& each : found)
+    variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
+  if (std::abs(up) > kEarth || variance > std::pow(0.1 * kEarth, 2)) return "";
+  return fmt::format(
+      "the rate along the mean specific force is {:.3f} °/h; if the sensor stood still, that is the "
+      "Earth's rate at latitude {:.2f}°",
+      up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
 }
 
 }  // namespace
@@ -208,6 +250,8 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
               " was dropped: \" - \" in a name stands for a difference of two columns; another name "
               "(--column) makes it a channel");
     }
+  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front(), found) : "";
+  if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   return found;
 }
 
