@@ -210,6 +210,16 @@ TEST(Rectification, IsNotLookedForWhereASwellSwings) {
   EXPECT_TRUE(shakes(60000, 0.01, 2.0 * M_PI * 17.0));
 }
 
+TEST(Motion, IsToldByUnitAndName) {
+  EXPECT_EQ(motion_of("accel_z_mps2"), Motion::kAcceleration);
+  EXPECT_EQ(motion_of("seis_z_mps"), Motion::kVelocity);
+  EXPECT_EQ(motion_of("north_um"), Motion::kPosition);
+  EXPECT_EQ(motion_of("attitude_deg"), Motion::kAngle);
+  for (const char* name : {"temperature_degC", "supply_V", "fan_rpm", "pump_rpm", "laser_wavelength_nm",
+                           "reference_rate_radps", "seis_temperature_degC", "pressure_hPa"})
+    EXPECT_EQ(motion_of(name), Motion::kNone) << name;
+}
+
 // An acceleration that drifts as the bias does, by 0.5 °/s for 1 m/s^2 where makers specify 0.005.
 TEST(Proxies, AreShownAndNotWritten) {
   std::mt19937_64 random(9);

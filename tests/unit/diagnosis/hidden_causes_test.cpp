@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several captures compared coefficient by coefficient, and what is reported when much stays unexplained.
-#include "filters/diagnosis/checks/predicted_capture.h"
+#include "filters/diagnosis/report/left_out.h"
 
 #include <gtest/gtest.h>
 
@@ -104,6 +104,19 @@ TEST(Diagnose, AChannelThatFollowedTheCauseInOneCaptureIsNotSubtracted) {
   const Diagnosis found = diagnose({record_of(followed, "first"), record_of(alone, "second")}, {});
   for (const FoundEffect& each : found.effects) EXPECT_NE(each.effect.channel, "temperature_degC");
   EXPECT_TRUE(said(found, "is no effect of this channel but of something that ran with it"));
+}
+
+TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(1);
+  diagnosis.unexplained.fraction = 0.51;
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 1), "") << "a line is no channel's";
+  diagnosis.effects[0].effect.channel = "temperature_degC";
+  EXPECT_NE(unexplained_despite_claims(diagnosis, 1).find("51 %"), std::string::npos);
+  EXPECT_NE(unexplained_despite_claims(diagnosis, 1).find("second capture"), std::string::npos);
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 2).find("second capture"), std::string::npos);
+  diagnosis.unexplained.fraction = 0.12;
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 1), "");
 }
 
 // Effects found on a structure that sways.

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <span>
 #include <tuple>
 
+#include "filters/estimator/walk.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tests/unit/estimator/drive.h"
 
@@ -124,3 +126,55 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
                                          Colour{"tails", 0.0, 0.0, 0.02}, Colour{"all", 0.3, 0.5, 0.01}));
 
 }  // namespace
+
+namespace ifog {
+namespace {
+
+// What a stream says of its noise: what is white over every octave and walks, and what is motion.
+
+TEST(Walk, TakesNoMotionForNoise) {
+  constexpr double kRadian = 2.0 * 3.14159265358979;
+  double slow = 0.0, before = 0.0;
+  const std::vector<std::function<double(int, double)>> motions{
+      // Shaking whose angle is bounded: the difference of a bounded angle.
+      [&](int, double noise) { return 10.0 * (noise - std::exchange(before, noise)); },
+      // The same of a corner at a fiftieth of the sample rate.
+      [&](int, double noise) {
+        slow += 0.126 * (noise - slow);
+        return 40.0 * (noise - slow);
+      },
+      [](int i, double noise) { return noise + 10.0 * std::sin(kRadian * 0.01 * i); },
+      [](int i, double noise) { return noise + 0.01 * (i % 4000); }};
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    std::mt19937_64 engine(7);
+    std::normal_distribution<double> normal;
+    Walk learner;
+    for (int i = 0; i < 100'000; ++i)
+      ASSERT_FALSE(learner.take({motions[m](i, normal(engine))}, 1, true)) << m << ", sample " << i;
+  }
+}
+
+// What an earlier run knew stands until this one has had as much, and falls where the sensor is another one.
+TEST(Walk, RecallsUntilItIsContradicted) {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  Walk walks[3];
+  double found[3] = {}, walked = 0.0;
+  walks[0].recall(1e-9, 1e6);  // the same
+  walks[1].recall(1e-4, 1e6);  // the sensor is slower
+  walks[2].recall(1e-9, 1e6);  // it is quicker
+  for (int i = 0; i < 400'000; ++i) {
+    const double rate = normal(engine);
+    walked += 1e-2 * normal(engine);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto news = walks[k].take({k == 2 ? rate + walked : rate}, 1, true);
+      if (news) found[k] = news->ratio;
+    }
+  }
+  EXPECT_NEAR(found[0], 1e-9, 1e-12);
+  EXPECT_LT(found[1], 1e-6);
+  EXPECT_NEAR(std::log10(found[2]), -4.0, 0.5);
+}
+
+}  // namespace
+}  // namespace ifog
