@@ -211,12 +211,14 @@ TEST(Incrementer, AnAxisThatHasNeverBeenThereIsNoInvalidSample) {
   EXPECT_EQ(incrementer.counts().invalid, 122U);
 }
 
-// Axes whose noise is 1 : 10 : 100, under a model that says so and where nobody does: each is published with
+// Axes whose noise is 1 : 3 : 10, under a model that says so and where nobody does: each is published with
 // the variance of its own error.
 
 constexpr double kPeriod = 0.01;
-constexpr Axes kSigma{1e-6, 1e-5, 1e-4};
-constexpr Axes kWalkAsNoise{1e-17, 1e-15, 1e-13}, kWalkAlike{1e-15, 1e-15, 1e-15};  // variance, a sample
+constexpr Axes kSigma{1e-5, 3e-5, 1e-4};
+// Variance of the walk, a sample.
+constexpr Axes kWalkAsNoise{1e-15, 9e-15, 1e-13}, kWalkAlike{1e-14, 1e-14, 1e-14},
+    kWalkAgainst{1e-12, 1e-13, 1e-14};
 const std::vector<std::string> kNames{"x", "y", "z"};
 
 ChainSettings unlike(bool known, const Axes& walk) {
@@ -278,10 +280,12 @@ TEST(UnlikeAxesOfAChain, HaveTheirOwnVariance) {
     unsigned seeds;
     double low, high;
   };
-  for (const Row& row : {Row{"a model, settled", true, kWalkAsNoise, 2000, 20'000, 8, 0.6, 1.4},
-                         Row{"a model, first samples", true, kWalkAsNoise, 5, 50, 60, 0.4, 1.6},
-                         Row{"a model, walks alike", true, kWalkAlike, 10'000, 40'000, 8, 0.3, 1.6},
-                         Row{"no model", false, kWalkAsNoise, 12'000, 30'000, 8, 0.6, 1.4}}) {
+  for (const Row& row :
+       {Row{"a model, settled", true, kWalkAsNoise, 2000, 20'000, 8, 0.6, 1.4},
+        Row{"a model, first samples", true, kWalkAsNoise, 5, 50, 60, 0.4, 1.6},
+        Row{"a model, walks alike", true, kWalkAlike, 15'000, 60'000, 6, 0.3, 1.6},
+        Row{"a model, walks against the noise", true, kWalkAgainst, 15'000, 60'000, 6, 0.3, 1.6},
+        Row{"no model", false, kWalkAsNoise, 12'000, 30'000, 8, 0.6, 1.4}}) {
     SCOPED_TRACE(row.name);
     const Axes squares = normalised(unlike(row.known, row.walk), row.walk, row.from, row.to, row.seeds);
     for (std::size_t a = 0; a < 3; ++a) {
