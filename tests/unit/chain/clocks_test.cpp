@@ -88,6 +88,16 @@ TEST(FittedClock, FollowsAPeriodThatIsNotTheNominalOneAndSmoothsJitter) {
   EXPECT_NEAR(clock.period_s(), period_s, 1e-6 * period_s);
 }
 
+TEST(FittedClock, ALateArrivalHardlyMovesIt) {
+  FittedClock clock(1e-3, 1000);
+  std::int64_t time_ns = 0;
+  for (int n = 0; n < 5000; ++n) {
+    const std::int64_t late_ns = n == 4999 ? 50'000'000 : 0;
+    time_ns = clock.advance(1, kStart_ns + std::int64_t{n} * 1'000'000 + late_ns);
+  }
+  EXPECT_LT(std::abs(time_ns - (kStart_ns + 4999 * std::int64_t{1'000'000})), 100'000);
+}
+
 TEST(FittedClock, GoesNoFurtherThanThereIsRoomFor) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   FittedClock clock(1.0, 1000);

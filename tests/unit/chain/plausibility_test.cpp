@@ -49,6 +49,7 @@ class Feed {
     covered += increment_.covered_s[0];
     return increment_;
   }
+  void lose(std::uint32_t samples) { n_ += samples; }
   [[nodiscard]] const IncrementerCounts& counts() const { return incrementer_.counts(); }
   double angle = 0.0, covered = 0.0;
 
@@ -110,6 +111,29 @@ TEST(Plausibility, OneBadAngleCostsNothingAndANewOriginIsNoRotation) {
   EXPECT_NEAR(feed.angle, 9e-3 + 999e-3, 1e-12);
   EXPECT_NEAR(feed.covered, feed.angle, 1e-12);  // at 1 rad/s
   EXPECT_EQ(feed.counts().invalid, 1U);
+}
+
+// A device that turns at 2300 °/s for longer than half a turn, unheard or invalid; and one that rests.
+TEST(Plausibility, OverAGapInWhichItMayHaveGoneRoundNoTurnIsMadeUp) {
+  SensorFacts of = facts(SensorKind::angle, 0.0);
+  of.angle_wrap_rad = 2.0 * std::numbers::pi;
+  for (const double rate_radps : {40.0, -40.0, 0.0})
+    for (const int gap : {20, 60})  // samples of a millisecond
+      for (const bool invalid : {false, true}) {
+        SCOPED_TRACE(testing::Message() << rate_radps << " rad/s, " << gap << ", invalid " << invalid);
+        Feed feed(of);
+        int n = 0;
+        const auto next = [&] { return std::remainder(1e-3 * rate_radps * n++, of.angle_wrap_rad); };
+        while (n <= 100) feed.next(next());
+        const double before = feed.angle, gap_s = 1e-3 * gap;
+        for (int i = 1; invalid && i < gap; ++i) feed.next(kNaN);
+        if (!invalid) feed.lose(static_cast<std::uint32_t>(gap - 1));
+        n += gap - 1;
+        const bool known = gap_s < (rate_radps == 0.0 ? 2.0 : 0.03);
+        EXPECT_NEAR(feed.next(next()).covered_s[0], known ? gap_s : 0.0, 1e-12);
+        EXPECT_NEAR(feed.angle - before, known ? rate_radps * gap_s : 0.0, 1e-9);
+        EXPECT_NEAR(feed.next(next()).delta_theta_rad[0], 1e-3 * rate_radps, 1e-9);
+      }
 }
 
 TEST(Plausibility, TheUsersLimitsHold) {

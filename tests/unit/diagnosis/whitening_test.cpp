@@ -130,6 +130,20 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
+TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<double> truth, read;
+  for (int i = 0; i < 8000; ++i) {
+    truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
+    read.push_back(std::round(truth.back() + noise(random)));
+  }
+  const Reconstruction found = reconstruct(read);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_GT(rms_difference(read, truth), 0.25);
+  EXPECT_LT(rms_difference(found.values, truth), 0.1);
+}
+
 // RMS error of what is made of a channel that is read with a noise of 0.01.
 double left_of_noise(const std::vector<double>& truth, unsigned seed) {
   std::mt19937_64 random(seed);
