@@ -10,34 +10,9 @@
 #include "filters/allan/estimate_law.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/weighted_chi_squared.h"
-#include "filters/distributions/chi_squared.h"
 #include "tools/simulate/noise.h"
 
 namespace {
-
-// Abramowitz and Stegun, table 26.8, and the median and tails of the exponential distribution (two degrees of
-// freedom).
-TEST(Confidence, ChiSquaredQuantilesAreTheTables) {
-  EXPECT_NEAR(ifog::chi_squared_quantile(0.95, 1.0), 3.84146, 5e-6);
-  EXPECT_NEAR(ifog::chi_squared_quantile(0.95, 10.0), 18.3070, 5e-5);
-  EXPECT_NEAR(ifog::chi_squared_quantile(0.05, 30.0), 18.49266, 5e-5);
-  EXPECT_NEAR(ifog::chi_squared_quantile(0.995, 100.0), 140.169, 5e-4);
-  for (const double p : {1e-6, 0.16, 0.5, 0.999})
-    EXPECT_NEAR(ifog::chi_squared_quantile(p, 2.0) / (-2.0 * std::log1p(-p)), 1.0, 1e-10) << p;
-  // Wilson–Hilferty, good to 1e-6 at a million degrees.
-  EXPECT_NEAR(ifog::chi_squared_quantile(0.841344746, 1e6) / 1e6,
-              std::pow(1.0 - 2.0 / 9e6 + std::sqrt(2.0 / 9e6), 3), 1e-8);
-}
-
-// With two degrees of freedom the tail is exp(-x/2), far below what 1 - p can distinguish from 1.
-TEST(Confidence, ChiSquaredTailsAreTheTables) {
-  EXPECT_NEAR(ifog::chi_squared_above(3.84146, 1.0), 0.05, 1e-6);
-  EXPECT_NEAR(ifog::chi_squared_exceeded(0.05, 10.0), 18.3070, 5e-5);
-  for (const double chance : {1e-200, 1e-20, 0.5}) {
-    EXPECT_NEAR(ifog::chi_squared_exceeded(chance, 2.0) / (-2.0 * std::log(chance)), 1.0, 1e-10) << chance;
-    EXPECT_NEAR(ifog::chi_squared_above(-2.0 * std::log(chance), 2.0) / chance, 1.0, 1e-10) << chance;
-  }
-}
 
 // The interval must hold the true deviation as often as it says, whatever the estimator, also where the noise
 // changes its type at the longest τ. A short version of tests/bench/allan/coverage.cpp.

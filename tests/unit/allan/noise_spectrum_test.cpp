@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the numbers taken of a record are expected to scatter like, against closed forms, and how much of what
-// all samples together say of the terms is left in them.
+// What the numbers taken of a record are expected to scatter like, against closed forms.
 #include "filters/allan/noise/noise_spectrum.h"
 
 #include <gtest/gtest.h>
@@ -13,13 +12,11 @@
 #include "filters/allan/noise/angle_means.h"
 #include "filters/allan/noise/gauss_markov.h"
 #include "filters/allan/noise/noise_coefficients.h"
-#include "filters/allan/noise/noise_likelihood.h"
 #include "filters/allan/power_law.h"
 #include "tools/simulate/noise.h"
 
 namespace {
 
-using ifog::kTerms;
 using ifog::NoiseSpectrum;
 using ifog::TermVariances;
 
@@ -73,58 +70,6 @@ TEST(NoiseSpectrum, TheSlowPartOfFlickerIsItsDefinition) {
         EXPECT_NEAR(spectrum.slow[half].covariance[ifog::kB](c, c), sum, 1e-9 * std::abs(sum));
       }
   }
-}
-
-// Fisher information of the variances in all samples, with any constant and any ramp.
-Eigen::Matrix4d information_of_all(std::size_t samples, const TermVariances& truth) {
-  const auto n = static_cast<Eigen::Index>(samples);
-  const std::span<const TermVariances> lag = ifog::level_covariance(0);
-  std::array<Eigen::MatrixXd, kTerms> each;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t t = 0; t < kTerms; ++t) {
-    each[t].resize(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) each[t](i, j) = lag[static_cast<std::size_t>(std::abs(i - j))][t];
-    all += truth[t] * each[t];
-  }
-  Eigen::MatrixXd any(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i)
-    any.row(i) << 1.0, static_cast<double>(i) / static_cast<double>(n) - 0.5;
-  // Generalised covariances are known up to constants.
-  all.array() += 1e4 * all.diagonal().cwiseAbs().maxCoeff();
-  const Eigen::MatrixXd inverse = all.inverse(), across = inverse * any;
-  const Eigen::MatrixXd seen = inverse - across * (any.transpose() * across).inverse() * across.transpose();
-  std::array<Eigen::MatrixXd, kTerms> share;
-  for (std::size_t t = 0; t < kTerms; ++t) share[t] = seen * each[t];
-  Eigen::Matrix4d out;
-  for (std::size_t s = 0; s < kTerms; ++s)
-    for (std::size_t t = 0; t < kTerms; ++t)
-      out(static_cast<Eigen::Index>(s), static_cast<Eigen::Index>(t)) =
-          0.5 * share[s].cwiseProduct(share[t].transpose()).sum();
-  return out;
-}
-
-// Two terms that cross at an eighth of the record: of what all samples say of the slower one, the other
-// unknown, the spectrum keeps 95 to 99 %, and 91 % of white noise besides quantisation.
-TEST(NoiseSpectrum, LittleOfWhatAllSamplesSayIsLost) {
-  constexpr std::size_t kSamples = 512;
-  const double m = kSamples / 8.0;
-  const TermVariances allan{3.0 / (m * m), 1.0 / m, 2.0 * std::numbers::ln2 / std::numbers::pi, m / 3.0};
-  const NoiseSpectrum spectrum = spectrum_of(kSamples);
-  const ifog::NoiseLikelihood likelihood(spectrum, ifog::Ramp::kProjected);
-  for (std::size_t fast = 0; fast < kTerms; ++fast)
-    for (std::size_t slow = fast + 1; slow < kTerms; ++slow) {
-      TermVariances truth{};
-      truth[fast] = 1.0 / allan[fast];
-      truth[slow] = 1.0 / allan[slow];
-      const auto beside = [&](const Eigen::Matrix4d& information) {
-        const auto f = static_cast<Eigen::Index>(fast), s = static_cast<Eigen::Index>(slow);
-        return information(s, s) - information(s, f) * information(f, s) / information(f, f);
-      };
-      const double kept = beside(likelihood.information(truth)) / beside(information_of_all(kSamples, truth));
-      EXPECT_GT(kept, 0.9) << fast << " and " << slow;
-      EXPECT_LT(kept, 1.03) << fast << " and " << slow;
-    }
 }
 
 using ifog::Deviation;

@@ -289,18 +289,4 @@ TEST_F(Recording, APackedOneThatEndsEarlyIsReadAsFarAsItGoes) {
   EXPECT_EQ(std::ranges::count(said, "1 gzip stream ends early (truncated file); what is there was read"), 1);
 }
 
-// A real gyro's record through the frames of a device, where the shared captures are at hand.
-TEST_F(Recording, AMeasuredCaptureSurvives) {
-  const std::string file = std::string(IFOG_SHARED_DATA) + "/blueseis_bs1_ramp.csv.gz";
-  if (!fs::exists(file))
-    GTEST_SKIP() << "no captures at ../shared/data beside the project; put them there to run this";
-  const Capture capture = ifog::read_capture(file);
-  expect_same(capture, there_and_back(capture, "kvh1750", {{"format", "b"}}));
-  const Capture back = there_and_back(
-      capture, "dbc",
-      {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}, {"environment", "ramp_counts=Ramp"}});
-  expect_same(capture, back);
-  EXPECT_EQ(back.channels[0].values, capture.channels[0].values);
-}
-
 }  // namespace

@@ -126,22 +126,7 @@ LongCapture read(InputFile& file, const CaptureInput& input = {}) {
   return {input.read_long(file), file.path()};
 }
 
-void expect_the_rates(const CaptureView& capture) {
-  ASSERT_EQ(capture.size(), 2U * kSamples);
-  for (int n = 0; n < kSamples; ++n)
-    for (const int row : {n, n + kSamples})
-      EXPECT_NEAR(capture.rate_radps[0][static_cast<std::size_t>(row)], rate_of(n), 1e-8) << row;
-}
-
-// What the device sent in degrees, read in radians, would be rates 57 times as large.
-TEST(FlightRuns, EachIsReadWithItsOwnOptions) {
-  InputFile file("both.ifr", both_runs());
-  const LongCapture whole = read(file);
-  const CaptureView& capture = whole.view();
-  expect_the_rates(capture);
-  EXPECT_NEAR(capture.time_s[kSamples] - capture.time_s[kSamples - 1], 8.0 - 0.01 * (kSamples - 1), 0.003);
-}
-
+// Each with its own options: tests/system/field/runs.py.
 TEST(FlightRuns, AnOptionOfTheCommandLineStandsOverEach) {
   std::string text = run_of(kDegrees, 7, 1'000'000'000) + run_of(kDegrees, 8, 9'000'000'000);
   InputFile file("both.ifr", std::move(text));

@@ -185,34 +185,6 @@ TEST(BegunMoving, AJumpIsFollowedAndASingleOutlierPassedOver) {
     }
 }
 
-// An axis that has its first value when the others have long rested is not known by their variance.
-TEST(BegunMoving, AnAxisThatComesLateIsFollowedToo) {
-  for (const double amplitude : {0.0, 0.1, 10.0}) {
-    const double sigma = std::sqrt(noise_of(100.0));
-    std::mt19937_64 random(6);
-    std::normal_distribution<double> normal(0.0, sigma);
-    FilterSettings told;
-    told.process_noise = 1e-16;
-    told.measurement_noise = sigma * sigma;
-    Estimator estimator(told, 2, 0.01);
-    EstimatorInput in;
-    EstimatorOutput out;
-    std::vector<double> normalised;
-    for (int i = 0; i < 6000; ++i) {
-      const double truth = amplitude * kDegree * std::cos(0.006 * i);
-      in = {};
-      in.sequence = static_cast<std::uint64_t>(i);
-      in.dt_s = 0.01;
-      in.valid_axes = i < 3000 ? 1U : 3U;
-      in.rate_radps = {normal(random), truth + normal(random)};
-      estimator.step(in, out);
-      const double error = out.denoised_radps[1] - truth;
-      if (i >= 3000) normalised.push_back(error * error / out.variance_rad2ps2[1]);
-    }
-    EXPECT_LT(worst(normalised), kMost) << amplitude;
-  }
-}
-
 TEST(BegunMoving, AGapAReloadOrAPullingAwayIsFollowedToo) {
   for (const double rate_hz : kRates)
     for (const double amplitude : kAmplitudes) {

@@ -194,26 +194,5 @@ TEST(SignalChain, NewPartsInATurnKeepTheDenoisedAngle) {
     }
 }
 
-// The first sample after a gap stands for one period. Were the gap's time booked with it, its noise would be
-// owed for all of the gap.
-TEST(SignalChain, AGapOwesNoAngle) {
-  std::vector<Increment> all = increments(20'000, 7);
-  all[8'000].rate_radps[0] = 0.01 + 3e-4;
-  all[8'000].delta_theta_rad[0] = all[8'000].rate_radps[0] * kPeriod_s;
-  all[8'000].dt_s = 10.0;
-  all[8'000].flags |= kGapBefore;
-  SignalChain chain(std::make_unique<ChainParts>(settings()));
-  ChainOutput out;
-  double apart_rad = 0.0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    chain.process(all[i], out);
-    apart_rad += out.estimate.denoised_radps[0] * all[i].covered_s[0] - out.delta_theta_rad[0];
-    if (i > 8'000) {
-      ASSERT_NEAR(out.estimate.denoised_radps[0], 0.01, 1.5e-4) << i;
-    }
-  }
-  EXPECT_NEAR(apart_rad, 0.0, 1e-4);
-}
-
 }  // namespace
 }  // namespace ifog

@@ -211,34 +211,36 @@ TEST(Incrementer, AnAxisThatHasNeverBeenThereIsNoInvalidSample) {
   EXPECT_EQ(incrementer.counts().invalid, 122U);
 }
 
-// Axes whose noise is 1 : 10 : 100, under a model that says so and where nobody does: each is published with
+// Axes whose noise is 1 : 3 : 10, under a model that says so and where nobody does: each is published with
 // the variance of its own error.
 
-constexpr double kPeriod = 0.01, kWalk = 1e-5;  // the latter over the noise, a sample
-constexpr std::array<double, 3> kSigma{1e-6, 1e-5, 1e-4};
+constexpr double kPeriod = 0.01;
+constexpr Axes kSigma{1e-5, 3e-5, 1e-4};
+// Variance of the walk, a sample.
+constexpr Axes kWalkAsNoise{1e-15, 9e-15, 1e-13}, kWalkAlike{1e-14, 1e-14, 1e-14},
+    kWalkAgainst{1e-12, 1e-13, 1e-14};
 const std::vector<std::string> kNames{"x", "y", "z"};
 
-ChainSettings unlike(bool known) {
+ChainSettings unlike(bool known, const Axes& walk) {
   ChainSettings out;
   out.facts.axes = 3;
   out.facts.nominal_rate_hz = 1.0 / kPeriod;
   out.axes = kNames;
   if (!known) return out;
   Model model;
-  double mean = 0.0;
+  model.filter.emplace();
   for (std::size_t a = 0; a < 3; ++a) {
     model.noise[kNames[a]].N = kSigma[a] * std::sqrt(kPeriod);
-    mean += kSigma[a] * kSigma[a] / 3.0;
+    model.noise[kNames[a]].K = std::sqrt(walk[a] / kPeriod);
+    model.filter->measurement_noise += kSigma[a] * kSigma[a] / 3.0;
+    model.filter->process_noise += walk[a] / kPeriod / 3.0;
   }
-  model.filter.emplace();
-  model.filter->process_noise = kWalk * mean / kPeriod;
-  model.filter->measurement_noise = mean;
   out.model = std::make_shared<const Model>(model);
   return out;
 }
 
 // Mean of error^2 over the variance of each axis from sample `from` to `to`, over seeds.
-Axes normalised(const ChainSettings& settings, int from, int to, unsigned seeds) {
+Axes normalised(const ChainSettings& settings, const Axes& steps, int from, int to, unsigned seeds) {
   Axes sums{};
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     std::mt19937_64 random(seed);
@@ -253,7 +255,7 @@ Axes normalised(const ChainSettings& settings, int from, int to, unsigned seeds)
       in.valid_axes = 7;
       in.samples = 1;
       for (std::size_t a = 0; a < 3; ++a) {
-        walk[a] += std::sqrt(kWalk) * kSigma[a] * normal(random);
+        walk[a] += std::sqrt(steps[a]) * normal(random);
         in.rate_radps[a] = walk[a] + kSigma[a] * normal(random);
         in.covered_s[a] = kPeriod;
       }
@@ -273,15 +275,19 @@ TEST(UnlikeAxesOfAChain, HaveTheirOwnVariance) {
   struct Row {
     const char* name;
     bool known;
+    Axes walk;
     int from, to;
     unsigned seeds;
     double low, high;
   };
-  for (const Row& row : {Row{"a model, settled", true, 2000, 20'000, 8, 0.6, 1.4},
-                         Row{"a model, first samples", true, 5, 50, 60, 0.4, 1.6},
-                         Row{"no model", false, 12'000, 30'000, 8, 0.6, 1.4}}) {
+  for (const Row& row :
+       {Row{"a model, settled", true, kWalkAsNoise, 2000, 20'000, 8, 0.6, 1.4},
+        Row{"a model, first samples", true, kWalkAsNoise, 5, 50, 60, 0.4, 1.6},
+        Row{"a model, walks alike", true, kWalkAlike, 15'000, 60'000, 6, 0.3, 1.6},
+        Row{"a model, walks against the noise", true, kWalkAgainst, 15'000, 60'000, 6, 0.3, 1.6},
+        Row{"no model", false, kWalkAsNoise, 12'000, 30'000, 8, 0.6, 1.4}}) {
     SCOPED_TRACE(row.name);
-    const Axes squares = normalised(unlike(row.known), row.from, row.to, row.seeds);
+    const Axes squares = normalised(unlike(row.known, row.walk), row.walk, row.from, row.to, row.seeds);
     for (std::size_t a = 0; a < 3; ++a) {
       EXPECT_GT(squares[a], row.low) << kNames[a];
       EXPECT_LT(squares[a], row.high) << kNames[a];

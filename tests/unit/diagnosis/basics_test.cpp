@@ -14,7 +14,6 @@
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
-#include "filters/model_file/toml_text.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/refusal.h"
@@ -32,28 +31,6 @@ struct Rows {
     return made_record("rows", time, rate, channels, reference);
   }
 };
-
-// A rate that swings, read by a gyro with a bias and a scale factor of -14 %. The reference has white noise
-// of a third of the rate, as one has that is interpolated from angles.
-TEST(Basics, AScaleFactorIsFoundBesideANoisyReference) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    Rows rows;
-    for (int i = 0; i < 4000; ++i) {
-      const double t = 0.1 * i, truth = 0.3 * std::sin(0.5 * t) + 0.2 * std::sin(0.13 * t + 1.0);
-      rows.time.push_back(t);
-      rows.rate.push_back(0.86 * truth + 0.02 + 0.002 * normal(random));
-      rows.reference.push_back(truth + 0.08 * normal(random));
-    }
-    const Diagnosis found = diagnose({rows.record()}, {});
-    const Effect* scale = effect_of(found, "linear");
-    ASSERT_NE(scale, nullptr) << seed;
-    EXPECT_NEAR(parameter(*scale, "coefficient"), -0.14, 0.02) << seed;
-    ASSERT_TRUE(found.bias);
-    EXPECT_NEAR(found.bias->value, 0.02, 0.003) << seed;
-  }
-}
 
 // Motion up to some hertz and a reference differentiated from noisy angles. Least squares of means of a second is
 // the oracle.
@@ -267,13 +244,6 @@ TEST(Proxies, AreShownAndNotWritten) {
   const Diagnosis written = diagnose({rows.record()}, asked);
   ASSERT_NE(effect_of(written, "linear"), nullptr);
   EXPECT_FALSE(effect_of(written, "linear")->shown_only);
-}
-
-// TOML's integers have 64 bits: what is larger is a number with a point.
-TEST(ModelText, NumbersReadBackWhateverTheirSize) {
-  EXPECT_EQ(toml_number(78447441097457238016.0), "78447441097457238016.0");
-  EXPECT_EQ(toml_number(-3.0), "-3");
-  EXPECT_EQ(toml_number(1e300), "1e+300");
 }
 
 }  // namespace

@@ -84,22 +84,6 @@ TEST(ConsistentReport, SharesAreTogetherNoMoreThanTheUnexplainedLeaves) {
   EXPECT_NEAR(diagnosis.effects[0].variance_explained, 0.02, 1e-12) << "what fits is left as it is";
 }
 
-TEST(ConsistentReport, EveryFigureThatGrowsIsTold) {
-  Diagnosis diagnosis;
-  diagnosis.sample_rate_hz = 10.0;
-  diagnosis.effects.resize(1);
-  diagnosis.before = {{"residual_rms_radps", 1.0}, {"rms_1s_radps", 0.5}, {"rms_100s_radps", 0.1}};
-  diagnosis.after = {{"residual_rms_radps", 1.0}, {"rms_1s_radps", 0.4}, {"rms_100s_radps", 0.2}};
-  const std::string few = grown_in_words(diagnosis, 50000.0);
-  EXPECT_EQ(few.find("100 s means grow 2 times, but there are 50 of them"), 0U) << few;
-  diagnosis.after["residual_rms_radps"] = 1.5;
-  const std::string many = grown_in_words(diagnosis, 50000.0);
-  EXPECT_EQ(many.find("single samples grow 1.5 times; 100 s means grow 2 times"), 0U) << many;
-  EXPECT_NE(many.find("that is no chance"), std::string::npos) << many;
-  diagnosis.after = diagnosis.before;
-  EXPECT_EQ(grown_in_words(diagnosis, 50000.0), "");
-}
-
 // In the judged half a channel acts opposite to the fitted half: the error that grows there is reported, too.
 TEST(ConsistentReport, WhatWasKeptBackMayDenyAndThenTheReportSaysSo) {
   std::vector<double> time, rate, channel;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/effects/compensator.h"
 #include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
@@ -50,35 +49,6 @@ TEST(Diagnose, QuietSensorsHaveNoEffect) {
     false_alarms += !diagnose({quiet(seed).record()}, {}).effects.empty();
   }
   EXPECT_EQ(false_alarms, 0);
-}
-
-TEST(Diagnose, FindsATemperatureEffectAndItsSize) {
-  Sensor s = quiet(21);
-  for (std::size_t i = 0; i < s.rate.size(); ++i) s.rate[i] += 5e-8 * (s.temperature[i] - 25.0);
-  const Diagnosis d = diagnose({s.record()}, {});
-  ASSERT_EQ(d.effects.size(), 1U);
-  EXPECT_EQ(d.effects[0].effect.form, "linear");
-  EXPECT_EQ(d.effects[0].effect.channel, "temperature_degC");
-  const ModelParameter& c = d.effects[0].effect.parameters[0];
-  EXPECT_NEAR(c.value, 5e-8, 4.0 * c.std_error);
-  EXPECT_LT(c.std_error, 5e-9);
-  EXPECT_LT(d.after.at("rms_100s_radps"), 0.5 * d.before.at("rms_100s_radps"));
-}
-
-// An effect whose size depends on a second channel is tried once the first channel has one.
-TEST(Diagnose, AProductOfTwoChannels) {
-  Sensor s = quiet(28);
-  for (std::size_t i = 0; i < s.rate.size(); ++i) {
-    const double warm = s.temperature[i] - 25.0;
-    s.rate[i] += 5e-8 * warm + 3e-6 * warm * (s.supply[i] - 12.0);
-  }
-  const Diagnosis d = diagnose({s.record()}, {});
-  ASSERT_EQ(d.effects.size(), 2U);
-  const auto product = [](const FoundEffect& found) { return found.effect.form == "product"; };
-  const auto found = std::find_if(d.effects.begin(), d.effects.end(), product);
-  ASSERT_NE(found, d.effects.end());
-  EXPECT_NE(found->effect.channel, found->effect.with_channel);
-  EXPECT_NEAR(found->effect.parameters[0].value, 3e-6, 4.0 * found->effect.parameters[0].std_error);
 }
 
 // A coil behind a housing: two time constants in a row.

@@ -106,22 +106,6 @@ TEST(Diagnose, AChannelThatFollowedTheCauseInOneCaptureIsNotSubtracted) {
   EXPECT_TRUE(said(found, "is no effect of this channel but of something that ran with it"));
 }
 
-TEST(HiddenCauses, DeniedEffectsAreNamedWithTheCaptureThatDeniesThem) {
-  Effect linear, square;
-  linear.form = "linear";
-  square.form = "quadratic";
-  linear.channel = square.channel = "laser_mA";
-  const std::vector<Record> records = {record_of({}, "first"), record_of({}, "second")};
-  const std::string said = denied_in_words({linear, square}, {{0, 1}, 1, 0.02, 0.05}, records);
-  EXPECT_EQ(said.find("linear of laser_mA and quadratic of laser_mA: of what the other captures predict "
-                      "0.02 ± 0.05 is there in second"),
-            0U)
-      << said;
-  EXPECT_NE(
-      denied_in_words({linear}, {{0}, 1, std::nan(""), 0.0}, records).find("nothing of it is seen in second"),
-      std::string::npos);
-}
-
 TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {
   Diagnosis diagnosis;
   diagnosis.effects.resize(1);

@@ -155,12 +155,6 @@ double left_of_noise(const std::vector<double>& truth, unsigned seed) {
   return rms_difference(found.values, truth);
 }
 
-TEST(Reconstruct, ReadingNoiseOfASmoothChannelIsSmoothedAway) {
-  std::vector<double> truth;
-  for (int i = 0; i < 8000; ++i) truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
-  EXPECT_LT(left_of_noise(truth, 2), 0.0025);
-}
-
 // Two kinks in hours of straight lines, and the spline has to turn there all the same.
 TEST(Reconstruct, ARampBetweenSoaksKeepsItsKinks) {
   std::vector<double> truth{10.0};

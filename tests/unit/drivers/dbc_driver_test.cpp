@@ -61,28 +61,6 @@ TEST(DbcDriver, GoettingFrameByHand) {
   EXPECT_EQ(samples[1].valid_axes, 0U);
 }
 
-TEST(DbcDriver, RacelogicFrameByHand) {
-  ifog::DriverInstance driver =
-      ifog::make_driver("dbc", {{"dbc", kDbcExamples + "racelogic_yaw03.dbc"},
-                                {"z", "Yaw_Rate"},
-                                {"environment", "accel_x_mps2=X_Accel, temperature_degC = Temp"}});
-  EXPECT_EQ(driver.description().sequence_modulus, 0U);
-  EXPECT_STREQ(driver.description().axis[0], "z");
-  // 0x42340000 = 45 deg/s; 0x3F800000 = 1 g; 0x41BC0000 = 23.5 °C in the other message.
-  const std::vector<ifog_sample> samples =
-      decode(driver, {frame(0x601, {0, 0, 0, 0, 0x41, 0xBC, 0, 0}),
-                      frame(0x600, {0x42, 0x34, 0, 0, 0x3F, 0x80, 0, 0}),
-                      frame(0x600, {0x42, 0x34, 0, 0, 0x3F, 0x80, 0, 0})});
-  ASSERT_EQ(samples.size(), 2U);
-  EXPECT_DOUBLE_EQ(samples[0].value[0], std::numbers::pi / 4.0);
-  EXPECT_EQ(samples[0].flags, 0U);
-  EXPECT_DOUBLE_EQ(samples[0].environment[0], 9.80665);
-  EXPECT_EQ(samples[0].environment[1], 23.5);
-  EXPECT_EQ(samples[0].environment_fresh, 3U);
-  EXPECT_EQ(samples[1].environment[1], 23.5);  // known, but not new
-  EXPECT_EQ(samples[1].environment_fresh, 1U);
-}
-
 // Each frame of a run is lost in turn: the samples that come out are exactly the ones that were complete.
 TEST(DbcDriver, ALostFrameCostsItsSampleAndMixesNone) {
   for (const bool counted : {true, false})

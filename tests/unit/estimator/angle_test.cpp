@@ -298,13 +298,4 @@ TEST(Coning, AddsAtAHundredHertzWhatItsGainSays) {
   }
 }
 
-TEST(SeaState, AddsNoDrift) {
-  const auto sea = [](double envelope, double t) {
-    const double w = 2 * std::numbers::pi * 0.1;
-    return times(turned(0, 4 * kDegree * envelope * std::sin(1.3 * w * t + 1), 0),
-                 turned(12 * kDegree * envelope * (std::sin(w * t) + 0.3 * std::sin(1.7 * w * t)), 0, 0));
-  };
-  for (const double drift : added_drift(sea, 5)) EXPECT_LT(std::abs(drift), 0.001) << "deg/h";
-}
-
 }  // namespace

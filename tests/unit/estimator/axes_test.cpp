@@ -17,74 +17,6 @@ namespace {
 using test::kPeriod;
 
 constexpr std::size_t kAxes = 3;
-constexpr Axes kLoud{1.0, 3.0, 10.0};  // standard deviations
-constexpr int kStartUp = 5000, kSettledAt = 20'000, kEnd = 80'000;
-
-struct Said {
-  Axes squares{};  // mean of error^2 over the published variance
-  Axes errors{};   // mean square
-  EstimatorHealth health;
-};
-
-// walk: of each axis over the white noise of the first, a sample.
-Said filtered(std::uint64_t seed, const Axes& walk) {
-  std::array<test::Record, kAxes> axes;
-  for (std::size_t a = 0; a < kAxes; ++a) {
-    axes[a] = test::record(100 * seed + a, kEnd, walk[a] / (kLoud[a] * kLoud[a]));
-    for (double& rate : axes[a].measured) rate *= kLoud[a];
-    for (double& rate : axes[a].truth) rate *= kLoud[a];
-  }
-  Axes noise{}, share{}, walk_share{};
-  double mean_noise = 0.0, mean_walk = 0.0;
-  for (std::size_t a = 0; a < kAxes; ++a) {
-    noise[a] = kLoud[a] * kLoud[a];
-    mean_noise += noise[a] / kAxes;
-    mean_walk += walk[a] / kAxes;
-  }
-  for (std::size_t a = 0; a < kAxes; ++a) {
-    share[a] = noise[a] / mean_noise;
-    walk_share[a] = walk[a] / mean_walk;
-  }
-  FilterSettings settings;
-  settings.process_noise = mean_walk / kPeriod;
-  settings.measurement_noise = mean_noise;
-  test::Fed filter(settings, kAxes, kPeriod, {.share = share, .walk_share = walk_share});
-  filter.in.sequence = kStartUp;
-  Said said;
-  for (std::size_t i = kStartUp; i < kEnd; ++i) {
-    const EstimatorOutput& out = filter.step({axes[0].measured[i], axes[1].measured[i], axes[2].measured[i]});
-    for (std::size_t a = 0; i >= kSettledAt && a < kAxes; ++a) {
-      const double square = std::pow(out.denoised_radps[a] - axes[a].truth[i], 2) / (kEnd - kSettledAt);
-      said.errors[a] += square;
-      said.squares[a] += square / out.variance_rad2ps2[a];
-    }
-  }
-  said.health = filter.estimator.health();
-  return said;
-}
-
-// The filters of the three axes differ in nothing but their scale, or the walks are the same, and the loud
-// axis' gain is far too small for the quiet one.
-TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
-  for (const Axes& walk : {Axes{1e-4, 9e-4, 1e-2}, Axes{1e-4, 1e-4, 1e-4}, Axes{1e-2, 1e-3, 1e-4}}) {
-    constexpr int kSeeds = 6;
-    Axes squares{};
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      const Said said = filtered(seed, walk);
-      for (std::size_t a = 0; a < kAxes; ++a) {
-        squares[a] += said.squares[a] / kSeeds;
-        // What the gain is too small for is in the innovations, and no noise.
-        EXPECT_GT(said.health.nis_mean[a], 0.7) << "axis " << a << ", seed " << seed;
-        EXPECT_LT(said.health.nis_mean[a], 1.8) << "axis " << a << ", seed " << seed;
-        EXPECT_NEAR(said.health.measurement_noise[a] / (kLoud[a] * kLoud[a]), 1.0, 0.3) << "axis " << a;
-      }
-    }
-    for (std::size_t a = 0; a < kAxes; ++a) {
-      EXPECT_GT(squares[a], 0.3) << "axis " << a << ", walks " << walk[0] << ' ' << walk[2];
-      EXPECT_LT(squares[a], 1.6) << "axis " << a << ", walks " << walk[0] << ' ' << walk[2];
-    }
-  }
-}
 
 // One axis that is five times as loud as the two others is no louder than it was where it comes alone: the
 // gain, which is one for all, is the same for it.
@@ -250,21 +182,6 @@ TEST(LostAxes, AnOutlierThatWasItsAxisLastIsNoPartOfWhatComesLongAfter) {
     ASSERT_LT(std::abs(sensor.rate(1)), 1.0) << i;
   }
   EXPECT_EQ(sensor.health().manoeuvres, 0U);
-}
-
-TEST(LostAxes, NorUnderWay) {
-  Sensor sensor(3, 1e-6, 5);
-  for (int i = 0; i < 20'000; ++i) {
-    const double truth = i > 2000 ? swing(500.0, 0.0016 * (i - 2000)) : 0.0;
-    std::array<double, 3> added{};
-    if (i == 5000) added[0] = 3000.0;
-    if (i == 15'000) added[1] = 60.0;
-    sensor.step(truth, i > 5000 ? 1 : 0, 0, added);
-    ASSERT_LT(std::abs(sensor.rate(0)), i == 5000 ? 4000.0 : 1000.0) << i;  // the outlier may be motion
-    if (i > 14'000 && i != 15'000) {
-      ASSERT_NEAR(sensor.rate(1), truth, 20.0) << i;
-    }
-  }
 }
 
 }  // namespace

@@ -13,16 +13,6 @@ using namespace ifog::test;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Faults, NanAndMissingAreOnlyPredicted) {
-  Record r = record(5, 5000, 1e-3);
-  for (std::size_t i = 2000; i < 2400; ++i)
-    r.measured[i] = i % 3 == 0 ? kNan : (i % 3 == 1 ? INFINITY : r.measured[i]);
-  const Filtered got = run(told(1e-3), r.measured);
-  for (const double rate : got.denoised) ASSERT_TRUE(std::isfinite(rate));
-  EXPECT_EQ(got.health.manoeuvres, 0U);
-  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 1000)), 0.25);
-}
-
 TEST(Faults, AGapWidensTheVarianceByTheWalkOverTheWholeOfIt) {
   ifog::FilterSettings settings = told(1e-3);
   settings.rule = "ckf";

@@ -233,19 +233,6 @@ TEST(Holes, NoAngleOfAJumpIsLostInThem) {
   }
 }
 
-// Every other sample of a step, at rest and under way: what waits for the next measurement waits until there
-// is one.
-TEST(Holes, AStepIsFollowedWithEveryOtherSample) {
-  for (const double amplitude : {0.0, 0.05}) {
-    const auto motion = [=](int i) {
-      return amplitude * std::sin(2 * std::numbers::pi * i * kPeriod) + (i >= 5000 ? 0.5 : 0.0);
-    };
-    const auto fate = [](int i) { return i >= 4000 && i % 2 == 0 ? Sample::invalid : Sample::good; };
-    const Seen seen = Turning(1, motion, fate).go(5200, 8000, 8000);
-    EXPECT_LT(seen.rms(), 1.05 * kNoise) << amplitude;
-  }
-}
-
 // One axis jumps while another that turns has no measurement.
 TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
   for (const bool under_way : {false, true}) {
@@ -294,22 +281,6 @@ TEST(Holes, AnAxisWithoutANumberWhileAnotherJumpsFollowsItsOwnStepAfterwards) {
       }
 }
 
-// One sample in twenty, whenever: the noise is heard in what lies together.
-TEST(Holes, AMissingSampleIsAsGoodAsAnUnusableOne) {
-  for (const double amplitude : {0.5, 5.0}) {
-    const auto lost = [&](Sample how) {
-      const auto fate = [=](int i) {
-        return (static_cast<std::uint32_t>(i) * 2'654'435'761U >> 16U) % 20 == 0 ? how : Sample::good;
-      };
-      return Turning(1, sine(amplitude, 2.0), fate).go(7000, 65'000, 65'000);
-    };
-    const Seen missing = lost(Sample::missing), invalid = lost(Sample::invalid);
-    EXPECT_LT(invalid.rms(), 1.2 * kNoise) << amplitude;
-    EXPECT_NEAR(missing.rms() / invalid.rms(), 1.0, 0.02) << amplitude;
-    EXPECT_NEAR(missing.nees() / invalid.nees(), 1.0, 0.05) << amplitude;
-  }
-}
-
 // A car or a drone whose log lacks every seventh row: no parabola is laid through a shaking, and a smooth turn is not held.
 TEST(Holes, AMissingSampleOfAShakeIsHeldAndOfATurnPredicted) {
   for (const bool shakes : {true, false}) {
@@ -336,17 +307,6 @@ TEST(Holes, AMissingSampleOfAShakeIsHeldAndOfATurnPredicted) {
     EXPECT_LT(std::sqrt(square / held), shakes ? 1.05 : 0.25);
     EXPECT_LT(nees / count, 2.0) << shakes;
     EXPECT_GT(nees / count, 0.3) << shakes;
-  }
-}
-
-// The noise is detected as well of an axis that has every n-th sample, while another has all.
-TEST(Holes, TheVarianceOfAnAxisInARhythmIsItsOwn) {
-  for (const int n : {2, 3, 7}) {
-    const auto fate = [=](int i) { return i % n == 0 ? Sample::good : Sample::invalid; };
-    const Seen seen = Turning(2, sine(0.05, 0.1), fate).go(7000, 65'000, 65'000);
-    EXPECT_LT(seen.rms(), kNoise) << n;
-    EXPECT_GT(seen.nees(), 0.3) << n;
-    EXPECT_LT(seen.nees(), 1.5) << n;
   }
 }
 

@@ -12,25 +12,21 @@ namespace {
 
 using namespace ifog::test;
 
-TEST(Rest, IsWithinFivePercentOfTheFilterToldTheTruth) {
-  for (const double ratio : {1e-2, 1e-3, 1e-6}) {
-    for (const double noise : {0.01, 1.0, 100.0}) {
-      if (noise < 1.0 && ratio > 1e-4) continue;  // a walk that quick is not told from motion
-      double ours = 0.0, best = 0.0;
-      std::uint64_t manoeuvres = 0;
-      for (std::uint64_t seed = 1; seed <= fewer(10U, 2U); ++seed) {
-        // Noise that is louder than was given is believed once it has been white for 8192 samples.
-        const Record r = record(seed, 60'000, ratio);
-        const Filtered got = run(told(ratio, noise), r.measured);
-        ours += mean_square_error(got.denoised, r.truth, 30'000);
-        best += mean_square_error(told_the_truth(r.measured, ratio), r.truth, 30'000);
-        manoeuvres += got.health.manoeuvres;
-      }
-      EXPECT_LT(std::sqrt(ours / best), 1.05) << "Q/R " << ratio << ", told R times " << noise;
-      if (noise >= 1.0) {
-        EXPECT_EQ(manoeuvres, 0U);
+// Told the right noise it is one of the regimes of tests/bench/quality. Noise that is louder than was given is believed
+// once it has been white for 8192 samples; a quick walk is then not told from motion.
+TEST(Rest, IsWithinFivePercentOfTheFilterToldTheTruthWhereItIsToldAWrongNoise) {
+  for (const auto& [ratio, noise] : {std::pair{1e-3, 100.0}, {1e-6, 100.0}, {1e-6, 0.01}}) {
+    double ours = 0.0, best = 0.0;
+    for (std::uint64_t seed = 1; seed <= fewer(10U, 2U); ++seed) {
+      const Record r = record(seed, 60'000, ratio);
+      const Filtered got = run(told(ratio, noise), r.measured);
+      ours += mean_square_error(got.denoised, r.truth, 30'000);
+      best += mean_square_error(told_the_truth(r.measured, ratio), r.truth, 30'000);
+      if (noise > 1.0) {
+        EXPECT_EQ(got.health.manoeuvres, 0U) << ratio;
       }
     }
+    EXPECT_LT(std::sqrt(ours / best), 1.05) << "Q/R " << ratio << ", told R times " << noise;
   }
 }
 
@@ -65,19 +61,6 @@ TEST(Outlier, IsPassedOver) {
       // A fifth of the noise: what leaving a measurement out, and another draw of R, may do.
       ASSERT_NEAR(with.denoised[i], without.denoised[i], 0.2) << size << ", sample " << i;
     }
-  }
-}
-
-TEST(Sine, IsFollowedBetterThanByTheBestFixedGain) {
-  for (const auto& [amplitude, samples] : {std::pair{1000.0, 1000.0}, {20.0, 1000.0}, {5.0, 500.0}}) {
-    const Record r = record(3, 12'000, 1e-3,
-                            [a = amplitude, p = samples](int i) { return a * std::sin(6.2831853 * i / p); });
-    double best = 1e300;
-    for (double ratio = 1e-4; ratio < 1e4; ratio *= 2) {
-      best = std::min(best, mean_square_error(told_the_truth(r.measured, ratio), r.truth, 1000));
-    }
-    const double ours = mean_square_error(run(told(1e-3), r.measured).denoised, r.truth, 1000);
-    EXPECT_LT(std::sqrt(ours / best), 1.1) << amplitude << " sigma over " << samples << " samples";
   }
 }
 

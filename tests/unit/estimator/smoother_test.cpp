@@ -47,28 +47,6 @@ struct Judged {
   [[nodiscard]] double nees() const { return normalised / count; }
 };
 
-TEST(Smoother, BeatsTheFilterAtRestAndInMotionAndKeepsTheAngle) {
-  constexpr int kLength = 60'000;
-  for (const double ratio : {1e-3, 1e-6}) {
-    if (kSanitized && ratio != 1e-3) continue;
-    for (const bool moving : {false, true}) {
-      double smoothed = 0.0, filtered = 0.0;
-      for (std::uint64_t seed = 32; seed < fewer(38U, 33U); ++seed) {
-        const Record r = record(seed, kLength, ratio, [moving](int i) {
-          return !moving ? 0.0 : i > 30'000 && i < 40'000 ? 20.0 : i > 50'000 ? 2e-2 * (i - 50'000) : 0.0;
-        });
-        const ifog::Smoothed got = smooth_one(told(ratio), r.measured);
-        smoothed += mean_square_error(got.rate_radps, r.truth, 1000);
-        filtered += mean_square_error(run(told(ratio), r.measured).denoised, r.truth, 1000);
-        double owed = 0.0;
-        for (std::size_t i = 0; i < r.measured.size(); ++i) owed += r.measured[i] - got.rate_radps[i];
-        EXPECT_NEAR(owed, 0.0, 1e-5) << ratio << (moving ? " moving" : " at rest");
-      }
-      EXPECT_LT(smoothed, 0.7 * filtered) << ratio << (moving ? " moving" : " at rest");
-    }
-  }
-}
-
 // Filtered states are worked out again piece by piece: what is smoothed there is what a part of the record
 // about it says, as nothing is remembered for as long.
 TEST(Smoother, IsTheSameWhereItsPiecesMeet) {
@@ -87,19 +65,6 @@ TEST(Smoother, IsTheSameWhereItsPiecesMeet) {
         EXPECT_NEAR(got.variance_rad2ps2[i + kAbout - at], whole.variance_rad2ps2[i], 1e-9) << i;
       }
     }
-  }
-}
-
-// Where anything may have happened, the measurement is all there is.
-TEST(Smoother, ABrokenSampleIsItsMeasurement) {
-  Record r = record(34, 40, 0.1, [](int i) { return i < 20 ? 0.0 : 1000.0 * (i - 20); });
-  const std::vector<double> walk(40, 0.01);
-  std::vector<float> memories(40, 10.0F);
-  for (std::size_t i = 18; i < 23; ++i) memories[i] = ifog::pace::kBroken;
-  const ifog::Smoothed got = ifog::smooth_course({r.measured, walk, {}, memories}, 1.0);
-  for (std::size_t i = 18; i < 23; ++i) {
-    EXPECT_NEAR(got.rate_radps[i], r.measured[i], 0.1) << i;
-    EXPECT_NEAR(got.variance_rad2ps2[i], 1.0, 0.02) << i;
   }
 }
 

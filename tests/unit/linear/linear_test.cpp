@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/linear/least_squares.h"
-
+// Least squares of our own and what is taken out of columns, against closed forms; an exact sum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,41 +8,9 @@
 #include "filters/linear/exact_sum.h"
 #include "filters/linear/normal_equations.h"
 #include "filters/linear/projection.h"
-#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
-
-// A straight line through four points; the closed form of its slope and level.
-TEST(LeastSquares, IsTheClosedFormOfALine) {
-  Columns x(4, 2);
-  x << 1, 0, 1, 1, 1, 2, 1, 3;
-  const Eigen::Vector4d y(1.0, 2.0, 4.0, 4.0);
-  const LeastSquares line(x);
-  EXPECT_EQ(line.rank(), 2);
-  const Eigen::VectorXd c = line.coefficients(y);
-  EXPECT_NEAR(c[0], 1.1, 1e-14);
-  EXPECT_NEAR(c[1], 1.1, 1e-14);
-  const Eigen::Vector4d left(-0.1, -0.2, 0.7, -0.4);
-  EXPECT_LT((left_by(x, y) - left).norm(), 1e-14);
-}
-
-TEST(LeastSquares, OfDependentColumnsExplainsWhatTheyExplain) {
-  Columns x(3, 3);
-  x << 1, 2, 3, 0, 1, 1, 0, 0, 0;  // the third is the sum of the others
-  const Eigen::Vector3d y(5.0, 1.0, 7.0);
-  EXPECT_EQ(LeastSquares(x).rank(), 2);
-  EXPECT_LT((left_by(x, y) - Eigen::Vector3d(0, 0, 7)).norm(), 1e-14);
-}
-
-// Twice the same column: the minimum of a² + b² under a + b = 6 is at 3 and 3.
-TEST(ShortestCoefficients, AreSharedByColumnsThatAreAlike) {
-  Eigen::MatrixXd x(3, 2);
-  x << 1, 1, 0, 0, 1, 1;
-  const Eigen::VectorXd c = shortest_coefficients(x, Eigen::Vector3d(6, 1, 6));
-  EXPECT_NEAR(c[0], 3.0, 1e-14);
-  EXPECT_NEAR(c[1], 3.0, 1e-14);
-}
 
 // X'X of a line at 0, 1, 2, 3 in units that make its columns differ by 1e12, and y = 1, 2, 4, 4: level and
 // slope are 1.1, worked out by hand.
@@ -107,57 +74,12 @@ TEST(Projection, LeavesTheResidualOfLeastSquares) {
   EXPECT_LT((x.transpose() * one).norm(), 1e-10);
 }
 
-TEST(Projection, TakesOutAMeanAndALine) {
-  Eigen::MatrixXd x(5, 2);
-  Eigen::VectorXd y(5);
-  for (Eigen::Index i = 0; i < 5; ++i) {
-    const double t = static_cast<double>(i) - 2.0;
-    x.row(i) << 1.0, t;
-    y[i] = 3.0 - 7.0 * t + (t * t - 2.0);  // t² - 2 is at right angles to 1 and t
-  }
-  Projection(x).take_out_of(y);
-  EXPECT_LT((y - Eigen::VectorXd((Eigen::VectorXd(5) << 2, -1, -2, -1, 2).finished())).norm(), 1e-13);
-}
-
 TEST(Projection, WhatIsBesideAColumnIsOrthonormalAndWhole) {
   const Eigen::Vector4d column(1.0, -2.0, 0.0, 5.0);
   const Eigen::MatrixXd complement = Projection::complement(column);
   ASSERT_EQ(complement.cols(), 3);
   EXPECT_LT((complement.transpose() * complement - Eigen::Matrix3d::Identity()).norm(), 1e-14);
   EXPECT_LT((complement.transpose() * column).norm(), 1e-14);
-}
-
-// (2 1; 1 2): eigenvalues 1 and 3 along (1, -1) and (1, 1), inverse (2 -1; -1 2) / 3, determinant 3.
-Eigen::MatrixXd two() { return (Eigen::MatrixXd(2, 2) << 2, 1, 1, 2).finished(); }
-
-TEST(Symmetric, EigenvaluesAscend) {
-  EXPECT_LT((symmetric_eigenvalues(two()) - Eigen::Vector2d(1, 3)).norm(), 1e-15);
-  const SymmetricEigen eigen = symmetric_eigen(two());
-  EXPECT_LT((eigen.values - Eigen::Vector2d(1, 3)).norm(), 1e-15);
-  EXPECT_NEAR(std::abs(eigen.vectors(0, 1)), std::sqrt(0.5), 1e-15);
-  EXPECT_NEAR(eigen.vectors(0, 0), -eigen.vectors(1, 0), 1e-15);
-}
-
-TEST(Symmetric, SolvesAndInverts) {
-  const SymmetricSolver solver(two());
-  EXPECT_TRUE(solver.is_positive());
-  EXPECT_LT((solver.solve(Eigen::Vector2d(3, 0)) - Eigen::Vector2d(2, -1)).norm(), 1e-15);
-  EXPECT_LT((3.0 * solver.inverse() - (Eigen::MatrixXd(2, 2) << 2, -1, -1, 2).finished()).norm(), 1e-15);
-  EXPECT_NEAR(solver.pivots().prod(), 3.0, 1e-15);
-}
-
-TEST(Symmetric, TellsWhatIsNotPositive) {
-  const Eigen::MatrixXd saddle = (Eigen::MatrixXd(2, 2) << 1, 2, 2, 1).finished();
-  EXPECT_FALSE(SymmetricSolver(saddle).is_positive());
-  EXPECT_FALSE(CholeskyFactor(saddle).exists());
-}
-
-TEST(Symmetric, CholeskyFactorSolves) {
-  const CholeskyFactor factor(two());
-  ASSERT_TRUE(factor.exists());
-  EXPECT_NEAR(factor.log_determinant(), 0.5 * std::log(3.0), 1e-15);
-  EXPECT_LT((factor.solve(Eigen::VectorXd(Eigen::Vector2d(3, 0))) - Eigen::Vector2d(2, -1)).norm(), 1e-15);
-  EXPECT_LT((factor.solve(two()) - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-15);
 }
 
 // A tenth of a day at 5 kHz, to a tenth of what a day may lose. The terms are whole multiples of 2^-70, so

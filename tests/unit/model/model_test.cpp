@@ -16,6 +16,7 @@
 #include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/model_file/sha256.h"
+#include "filters/model_file/toml_text.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
@@ -70,6 +71,13 @@ TEST(ModelFile, EverythingComesBackAsWritten) {
   folder.write("model.toml", text);
   EXPECT_EQ(model_text(read_model(folder.path("model.toml"))), text);
   EXPECT_THROW(read_model(folder.path("another.toml")), std::runtime_error);
+}
+
+// TOML's integers have 64 bits: what is larger is a number with a point.
+TEST(ModelText, NumbersReadBackWhateverTheirSize) {
+  EXPECT_EQ(toml_number(78447441097457238016.0), "78447441097457238016.0");
+  EXPECT_EQ(toml_number(-3.0), "-3");
+  EXPECT_EQ(toml_number(1e300), "1e+300");
 }
 
 TEST(ModelFile, ADifferenceOfChannelsIsTwoKeys) {

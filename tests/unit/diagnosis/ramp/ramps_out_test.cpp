@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/ramp/ramps_out.h"
-#include "tests/unit/diagnosis/made_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +7,16 @@
 #include <random>
 #include <vector>
 
+#include "filters/diagnosis/ramp/ramp.h"
+#include "filters/effects/compensator.h"
+#include "tests/unit/diagnosis/findings.h"
+#include "tests/unit/diagnosis/made_capture.h"
+
 namespace ifog {
 namespace {
 
 constexpr double kPeriod = 4096.0;  // counts
-constexpr double kStep_s = 0.01;
+constexpr double kStep_s = 0.005;
 constexpr double kPerCount = 80e-9;     // rad/s of one count a sample
 constexpr double kNoise = 2e-7;         // rad/s
 constexpr double kNonlinearity = 4e-9;  // rad
@@ -92,6 +96,36 @@ TEST(RampsOut, WhatDoesNotComeRoundStays) {
   ASSERT_EQ(without.records.size(), 1U);
   EXPECT_EQ(without.records[0].channels.size(), 2U);
   EXPECT_TRUE(take_out_ramps({}, 0.01).records.empty());
+}
+
+// Rotation put into the rate and, as the loop would, into the ramp's slope comes out with its gain and phase,
+// from a stalled ramp to many wraps a sample.
+TEST(Ramp, TheCorrectionIsTransparentToRotation) {
+  const Capture made = capture(6, 40000, 5.4e-5, kNonlinearity);
+  const auto fit = fit_ramp({record_of(made, "a")}, "ramp_counts", 0.01);
+  ASSERT_TRUE(fit.has_value());
+  Model model;
+  model.effects = {fit->found.effect};
+  const auto compensated = [&](const std::vector<double>* rotation) {
+    Compensator compensator(model, {""});
+    std::vector<double> left;
+    double position = 500.0;
+    for (std::size_t i = 0; i < 8000; ++i) {
+      const double w = rotation != nullptr ? (*rotation)[i] : 0.0;
+      position += w / kPerCount;
+      position -= kPeriod * std::floor(position / kPeriod);
+      CompensatorInput in;
+      in.dt_s = kStep_s;
+      in.rate_radps[0] = w;
+      const std::vector<double> channel = {std::floor(position)};
+      in.channels = channel;
+      CompensatorOutput out;
+      compensator.step(in, out);
+      left.push_back(out.compensated_radps[0]);
+    }
+    return left;
+  };
+  expect_transparent(compensated, kStep_s, {0.0, 5.4e-5, 2.6e-3, 9.7e-3});
 }
 
 }  // namespace
