@@ -14,7 +14,7 @@ constexpr std::size_t kWindow = 256;   // rows
 constexpr std::ptrdiff_t kFewest = 4;  // windows at each rate
 constexpr double kOther = 0.01;        // of the rate
 constexpr double kTimesScatter = 8.0;  // of the windows' periods; less is a rate that wanders
-constexpr double kLongStep = 1.5;      // of the usual step
+constexpr double kLongStep = 4.0;      // of the usual step; coarse stamps have twice that
 
 double mean_without_gaps(const std::vector<double>& time_s) {
   const double longest_s = kLongStep * median_step_s(time_s);
