@@ -284,13 +284,7 @@ void RowClock::spread_bursts(RowBlock& rows) {
     spread(rows, begin, end, time_s[end]);
   }
   rows.split_off(begin, buffered_);
-  hand_on(rows);
-}
-
-void RowClock::hand_on(RowBlock& rows) {
-  if (rows.size() == 0) return;
-  rate_.take(rows);
-  next_(rows);
+  if (rows.size() > 0) next_(rows);
 }
 
 std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) const {
@@ -343,7 +337,7 @@ void RowClock::finish() {
       fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
     spread(buffered_, last, rows, buffered_.time_s[last] + static_cast<double>(rows - last) * period_s_);
   }
-  hand_on(buffered_);
+  if (rows > 0) next_(buffered_);
   say();
 }
 
@@ -353,8 +347,6 @@ void RowClock::say() {
                              (repeated_ == 1 ? " row repeats" : " rows repeat") + " the row before and " +
                              (repeated_ == 1 ? "is" : "are") +
                              " dropped; --repeats keep reads them as samples");
-  if (const std::string change = rate_.change_in_words(); !change.empty())
-    notes_.notices.push_back(path_ + ": " + change);
   if (spread_ == 0) return;
   notes_.notices.push_back(
       path_ + ": " + std::to_string(spread_) + " rows " +

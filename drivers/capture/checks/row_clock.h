@@ -18,7 +18,6 @@
 #include <string>
 #include <utility>
 
-#include "drivers/capture/checks/row_rate.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
@@ -81,7 +80,6 @@ class RowClock {
   // End of the burst that starts at `begin`; the number of rows if more of it may follow.
   [[nodiscard]] std::size_t end_of_burst(const RowBlock& rows, std::size_t begin) const;
   void spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s);
-  void hand_on(RowBlock& rows);
   void say();
 
   const std::string& path_;
@@ -95,7 +93,6 @@ class RowClock {
   double period_s_ = 0.0;  // sample period of the last burst or single row
   std::size_t spread_ = 0, repeated_ = 0;
   bool begun_ = false;
-  RowRate rate_;
   Row given_{kMissing, 0}, ordered_{kMissing, 0};  // the last ones
 };
 
