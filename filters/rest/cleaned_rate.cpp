@@ -43,6 +43,35 @@ std::string in_words(const std::vector<Stretch>& stuck, std::span<const double> 
          ", not used in these figures";
 }
 
+// Interleaved sensors differ by their biases throughout: the scatter of every second, third or fourth sample about its
+// mean is less than half of the total scatter. A dither does not stay in step with the samples for a whole record.
+void find_interleaved(const Samples& rate, std::vector<ValueFault>& faults) {
+  constexpr std::size_t kMostSamples = 1'000'000, kFewSamples = 256;
+  std::vector<double> values;
+  for (const double value : rate)
+    if (!std::isnan(value) && values.size() < kMostSamples) values.push_back(value);
+  if (values.size() < kFewSamples) return;
+  const auto variance = [&](std::size_t first, std::size_t apart) {
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    for (std::size_t i = first; i < values.size(); i += apart) {
+      const double value = values[i] - values[0];
+      count += 1.0, sum += value, squares += value * value;
+    }
+    return squares / count - sum / count * (sum / count);
+  };
+  const double all = variance(0, 1);
+  for (std::size_t sensors = 2; sensors <= 4; ++sensors) {
+    double within = 0.0;
+    for (std::size_t first = 0; first < sensors; ++first)
+      within += variance(first, sensors) / static_cast<double>(sensors);
+    if (within > 0.25 * all || all == 0.0) continue;
+    faults.push_back({"interleaved", std::to_string(sensors) +
+                                         " sensors seem to stand in turn, each with a bias of its "
+                                         "own; --only COLUMN=VALUE reads one of them"});
+    return;
+  }
+}
+
 // leaps: in order.
 std::optional<Samples> without(std::span<const double> rate, const std::vector<Glitches::Leap>& leaps) {
   if (leaps.empty()) return std::nullopt;
@@ -57,6 +86,7 @@ std::optional<Samples> without(std::span<const double> rate, const std::vector<G
 void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   auto cleaned = without_leaps(rate, rate, stretches({}, rate, {}), time_s, faults, LeapOf::kOneValue);
   if (cleaned) rate = *std::move(cleaned);
+  find_interleaved(rate, faults);
 }
 
 void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {

@@ -18,8 +18,8 @@ namespace ifog {
 
 using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
-// Sets placeholders such as -999 (LeapOf::kOneValue, glitches.h) to NaN, for commands that pass the rate on.
-// rate: rad/s, NaN where missing.
+// Sets placeholders such as -999 (LeapOf::kOneValue, glitches.h) to NaN, for commands that pass the rate on, and tells of
+// sensors that stand in turn. rate: rad/s, NaN where missing.
 void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // Also sets runs of eight or more equal samples to NaN, if nine of ten runs are single samples; to be called

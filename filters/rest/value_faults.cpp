@@ -102,30 +102,6 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
                                   " °/s above the others, none between: signed counts read as unsigned"});
 }
 
-// Interleaved sensors differ by their biases throughout. A dither does not stay in step with the samples for
-// a whole record.
-void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>& found) {
-  const auto variance = [&](std::size_t first, std::size_t apart) {
-    double count = 0.0, sum = 0.0, squares = 0.0;
-    for (std::size_t i = first; i < values.size(); i += apart) {
-      const double value = values[i] - values[0];
-      count += 1.0, sum += value, squares += value * value;
-    }
-    return squares / count - sum / count * (sum / count);
-  };
-  const double all = variance(0, 1);
-  for (std::size_t sensors = 2; sensors <= 4; ++sensors) {
-    double within = 0.0;
-    for (std::size_t first = 0; first < sensors; ++first)
-      within += variance(first, sensors) / static_cast<double>(sensors);
-    if (within > 0.25 * all) continue;
-    found.push_back({"interleaved", std::to_string(sensors) +
-                                        " sensors seem to stand in turn, each with a bias of its "
-                                        "own; --only COLUMN=VALUE reads one of them"});
-    return;
-  }
-}
-
 void find_implausible(const std::vector<double>& values, std::vector<ValueFault>& found) {
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   if (std::abs(mean) > kMostBias_radps)
@@ -146,7 +122,6 @@ void find_value_faults(std::span<const double> rate, std::span<const Stretch> pa
   const std::size_t before = found.size();
   find_held(values, period_s, found);
   if (found.size() == before) find_coarse(values, found);
-  if (found.size() == before) find_interleaved(values, found);
   if (found.size() == before) find_wrapped(values, sorted, found);
   find_clipped(sorted, found);
   find_implausible(values, found);

@@ -13,7 +13,7 @@
 namespace ifog {
 
 struct ValueFault {
-  std::string name;  // held, coarse, clipped, wrapped, interleaved, unit; leaps and stuck from cleaned_rate.h
+  std::string name;  // held, coarse, clipped, wrapped, unit; leaps, stuck, interleaved from cleaned_rate.h
   std::string text;
 };
 
@@ -24,9 +24,9 @@ struct ValueFault {
 //   - clipped: an extreme value is 1 % of the samples, and thrice as frequent as the next and the average one;
 //   - wrapped: 1 % of the steps are most of the range, and the middle of the range is empty, of more than
 //   two values: signed counts read as unsigned;
-//   - interleaved: the scatter of every second, third or fourth sample about its mean is less than half of
-//   the total scatter;
 //   - unit: the mean at rest exceeds 5 °/s, the largest bias of a MEMS gyro.
+// Sensors that stand in turn, each with a bias of its own, are found by leave_out_placeholders() in cleaned_rate.h:
+// motion does not hide them, and every command says so.
 void find_value_faults(std::span<const double> rate, std::span<const Stretch> parts, double period_s,
                        std::vector<ValueFault>& found);
 

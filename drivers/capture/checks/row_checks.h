@@ -19,6 +19,19 @@ namespace ifog {
 // "rate_radps is '1e9', which no sensor measures, expected …".
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
 
+// Whether rows come at one rate. Analyses assume an even clock, which a device or logger may change.
+class RowRate {
+ public:
+  void take(const RowBlock& rows);
+  // "rows come at 100 Hz until 12.5 s and at 105 Hz from there on: …"; "" for one rate, up to 1 %.
+  [[nodiscard]] std::string change_in_words() const;
+
+ private:
+  TimeOrigin origin_;
+  std::vector<double> times_;                // of the present window
+  std::vector<double> begins_s_, period_s_;  // of each window before
+};
+
 class RowChecks {
  public:
   // columns: in the order of the sink's names. Path, sink and notes must outlive this object.
@@ -44,6 +57,7 @@ class RowChecks {
   RowSink& sink_;
   RowNotes& notes_;
   RowClock clock_;
+  RowRate rate_;
   std::optional<RowBlock> all_;  // used if angles become rates
   std::size_t rows_ = 0;
   std::size_t given_ = 0;  // rows after the clock

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -39,6 +41,8 @@ constexpr std::size_t kFewBursts = 8, kLateBursts = 16, kLateRows = 128;
 // No packet has as many rows; a logger that records for some seconds now and then has them, at even times.
 constexpr double kWindowRows = 32.0;
 constexpr double kHole = 1.5;  // times the usual step; longer steps are gaps
+// No pause between bursts is as long in usual ones, and no late row in ticks; longer ones are holes.
+constexpr double kLongPause = 16.0, kLateTicks = 4.0;
 
 // True if four of five are within 20 % of the median: packets are even, gaps and jitter are not.
 bool are_even(const std::vector<double>& values) {
@@ -60,33 +64,60 @@ bool are_late(const std::vector<double>& departure) {
   return departure.size() > kLateBursts * kLateBursts && squares(kLateBursts) < 4.0 * squares(1);
 }
 
-Bursts bursts_of(const std::vector<double>& time_s) {
-  if (time_s.size() < 2) return {};
-  const double mean_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  std::vector<double> within, between, rows, departure;
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i < time_s.size(); ++i) {
-    const double step_s = time_s[i] - time_s[i - 1];
-    if (step_s <= mean_s) {
-      within.push_back(step_s);
-      continue;
-    }
-    between.push_back(time_s[i] - time_s[begin]);
-    rows.push_back(static_cast<double>(i - begin));
-    departure.push_back(static_cast<double>(i) - time_s[i - 1] / mean_s);
-    begin = i;
-  }
-  if (between.size() < kFewBursts || within.size() < between.size()) return {};
-  if (median_value(rows) >= kWindowRows && are_even(within)) return {};
-  if (median_value(within) >= 0.25 * mean_s) return {};
-  if (are_even(between) && are_even(rows)) return {mean_s};
-  return are_late(departure) ? Bursts{mean_s, kLateRows} : Bursts{};
+// True for stamps of a clock whose tick is the sample period: most steps are one tick, and a late row's longer one is
+// made up by none.
+bool are_ticks(const std::vector<double>& steps) {
+  const double tick = median_value(steps);
+  const auto count = [&](auto is) {
+    return 100 * static_cast<std::size_t>(std::ranges::count_if(steps, is));
+  };
+  const std::size_t none = count([](double step) { return step == 0.0; });
+  return tick > 0.0 && none >= steps.size() &&
+         2 * none >= count([=](double s) { return s > kHole * tick; }) &&
+         count([=](double s) { return std::abs(s - tick) <= 1e-3 * tick; }) >= 50 * steps.size();
 }
 
-bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
-  return !rows.columns.empty() && std::ranges::all_of(rows.columns, [&](const std::vector<double>& column) {
-    return column[a] == column[b] || (std::isnan(column[a]) && std::isnan(column[b]));
-  });
+// Mean step and the shortest hole: without the steps that are longer than the usual pauses.
+std::pair<double, double> mean_and_hole(const std::vector<double>& steps) {
+  double mean_s = 0.0, hole_s = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 4; ++round) {
+    std::vector<double> kept, pauses;
+    std::ranges::copy_if(steps, std::back_inserter(kept), [&](double step) { return step < hole_s; });
+    mean_s = std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
+    std::ranges::copy_if(kept, std::back_inserter(pauses), [&](double step) { return step > mean_s; });
+    if (!pauses.empty()) hole_s = kLongPause * median_value(std::move(pauses));
+  }
+  return {mean_s, hole_s};
+}
+
+Bursts bursts_of(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) return {};
+  std::vector<double> steps(time_s.size());
+  std::adjacent_difference(time_s.begin(), time_s.end(), steps.begin());
+  steps.erase(steps.begin());
+  const auto [mean_s, hole_s] = mean_and_hole(steps);
+  std::vector<double> within, between, rows, departure;
+  std::size_t begin = 0;
+  double elapsed_s = 0.0, begun_s = 0.0;  // without holes
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    const double step_s = steps[i - 1] < hole_s ? steps[i - 1] : mean_s;
+    if (step_s <= mean_s) {
+      within.push_back(step_s);
+    } else {
+      between.push_back(elapsed_s + step_s - begun_s);
+      rows.push_back(static_cast<double>(i - begin));
+      departure.push_back(static_cast<double>(i) - elapsed_s / mean_s);
+      begin = i;
+      begun_s = elapsed_s + step_s;
+    }
+    elapsed_s += step_s;
+  }
+  const bool bursts = between.size() >= kFewBursts && within.size() >= between.size() &&
+                      (median_value(rows) < kWindowRows || !are_even(within)) &&
+                      median_value(within) < 0.25 * mean_s;
+  if (bursts && are_even(between) && are_even(rows)) return {mean_s};
+  if (bursts && are_late(departure)) return {mean_s, kLateRows, hole_s};
+  return are_ticks(steps) ? Bursts{0.0, kLateRows, kLateTicks * median_value(steps)} : Bursts{};
 }
 
 // True if most rows that repeat the one before, with its time, do so by chance, as coarse values do: then rows
@@ -97,8 +128,8 @@ bool repeat_by_chance(const RowBlock& rows) {
   for (std::size_t i = kApart; i < rows.size(); ++i, ++all) {
     const bool same_time = rows.time_s[i] == rows.time_s[i - 1];
     timed += same_time ? 1 : 0;
-    repeated += same_time && same_values(rows, i, i - 1) ? 1 : 0;
-    equal += same_values(rows, i, i - kApart) ? 1 : 0;
+    repeated += same_time && rows.cells[i] == rows.cells[i - 1] ? 1 : 0;
+    equal += rows.cells[i] == rows.cells[i - kApart] ? 1 : 0;
   }
   return repeated * (all + equal) < 2 * equal * timed;
 }
@@ -120,22 +151,35 @@ double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   return found->length_s;
 }
 
-// True if a time that goes back is the last of some that do and increase: of another recording, which begins in the first
-// half of this one, or before it. These were dropped, except this one.
-bool RowOrder::begins_again(const RowBlock& rows, std::size_t row) {
+// How many rows that go back and increase are another recording: some in its first half, as of one that begins; later,
+// where a clock was set, more than can be dropped.
+std::size_t RowOrder::enough(double now_s) const {
+  if (joined_ == kFew) return std::numeric_limits<std::size_t>::max();
+  return now_s - first_s_ > 0.5 * (last_s_ - first_s_) ? std::max(kFew, rows_ / kRowsAFault) : kFew;
+}
+
+// The rows after the last one that go back: dropped, or of another recording. False: the next rows decide.
+bool RowOrder::settle_back(const RowBlock& rows, std::size_t& row, bool is_last) {
   const double now_s = rows.time_s[row] + offset_s_;
-  falling_ += back_ > 0 && now_s < back_s_ ? 1 : 0;
-  back_ = now_s >= back_s_ ? back_ + 1 : 1;
-  back_s_ = now_s;
-  if (back_ < kFew || joined_ == kFew || now_s - first_s_ > 0.5 * (last_s_ - first_s_)) return false;
-  back_ = 0;
-  dropped_.count -= kFew - 1;
-  ++joined_;
-  first_s_ = last_s_ + kBetween_s;
-  offset_s_ += first_s_ - now_s;
-  std::string at = " begins again at ";
-  append_time(at, rows.origin, rows.time_s[row]);
-  tell_joined(line_of(rows, row), at + " s, and " + std::to_string(kFew - 1) + " rows before are dropped");
+  const std::size_t wanted = enough(now_s);
+  std::size_t end = row + 1, increasing = 1;
+  const auto step_s = [&] { return rows.time_s[end] - rows.time_s[end - 1]; };
+  for (; end < rows.size() && increasing < wanted && step_s() >= 0.0; ++end) {
+    if (rows.time_s[end] + offset_s_ >= last_s_) break;
+    increasing += step_s() > 0.0 ? 1 : 0;
+  }
+  if (increasing >= wanted) {
+    ++joined_;
+    first_s_ = last_s_ + kBetween_s;
+    offset_s_ += first_s_ - now_s;
+    std::string at = " begins again at ";
+    append_time(at, rows.origin, rows.time_s[row]);
+    tell_joined(line_of(rows, row), at + " s");
+    return true;
+  }
+  if (end == rows.size() && !is_last && joined_ < kFew) return false;
+  falling_ += end < rows.size() && step_s() < 0.0 ? 1 : 0;
+  for (; row < end; ++row, ++rows_) drop(rows, row, false);
   return true;
 }
 
@@ -145,35 +189,38 @@ void RowOrder::tell_joined(std::size_t line, const std::string& how) {
       ", as after a clock was set or where two recordings are joined: treated as a hole");
 }
 
-void RowOrder::take(RowBlock& rows, std::size_t known) {
-  std::size_t kept = known;
-  for (std::size_t i = known; i < rows.size(); ++i) {
-    double now_s = rows.time_s[i] + offset_s_;
-    const bool back = rows_++ > 0 && now_s < last_s_;
-    if (const double longer_s = back ? rolled_over_s(now_s, line_of(rows, i)) : 0.0; longer_s > 0.0) {
-      offset_s_ += longer_s;
-      now_s += longer_s;
-    } else if (back && begins_again(rows, i)) {
-      now_s = first_s_;
-    } else if (back) {
-      // If this row continues those before the last one, the last one is wrong.
-      const bool last_is_late = now_s >= before_s_;
-      drop(rows, last_is_late ? kept - 1 : i, last_is_late);
-      if (!last_is_late) continue;
-      --kept;
-      last_s_ = before_s_;
-    } else if (last_s_ - before_s_ >= kYear_s && !std::exchange(set_, true)) {
-      tell_joined(line_, " continues " + std::to_string(std::llround(last_s_ - before_s_)) + " s later");
+void RowOrder::take(RowBlock& rows, bool is_last) {
+  buffered_.append(rows);
+  std::swap(buffered_, rows);
+  std::size_t kept = rows_ > 0 ? 1 : 0, i = kept;
+  while (i < rows.size()) {
+    const double now_s = rows.time_s[i] + offset_s_;
+    if (rows_ > 0 && now_s < last_s_) {
+      if (const double longer_s = rolled_over_s(now_s, line_of(rows, i)); longer_s > 0.0) {
+        offset_s_ += longer_s;
+      } else if (now_s >= before_s_) {  // this row continues those before the last one, which is wrong
+        drop(rows, --kept, true);
+        last_s_ = before_s_;
+      } else if (!settle_back(rows, i, is_last)) {
+        break;
+      }
+      continue;
     }
-    if (!back) back_ = 0;
-    if (rows_ == 1) first_s_ = now_s;
-    if (rows_ > 1) before_s_ = last_s_;
+    if (last_s_ - before_s_ >= kYear_s && !std::exchange(set_, true))
+      tell_joined(line_, " continues " + std::to_string(std::llround(last_s_ - before_s_)) + " s later");
+    if (rows_++ == 0)
+      first_s_ = now_s;
+    else
+      before_s_ = last_s_;
     last_s_ = now_s;
     line_ = line_of(rows, i);
-    rows.move_row(i, kept);
+    rows.move_row(i++, kept);
     rows.time_s[kept++] = now_s;
   }
+  const std::size_t ordered = kept;
+  while (i < rows.size()) rows.move_row(i++, kept++);
   rows.keep_first(kept);
+  if (!is_last) rows.split_off(std::max<std::size_t>(ordered, 1) - 1, buffered_);
 }
 
 void RowOrder::drop(const RowBlock& rows, std::size_t row, bool late) {
@@ -197,7 +244,8 @@ void RowOrder::finish() {
             (falls ? "; times decrease from row to row, as of a recording written backwards: 'tac' turns them"
              : count > 1 ? "; so are " + std::to_string(count - 1) + " more rows"
                          : "") +
-            "; --sample-rate HZ reads all rows as even");
+            (joined_ == kFew ? "; of sensors whose rows stand in blocks --only COLUMN=VALUE reads one"
+                             : "; --sample-rate HZ reads all rows as even"));
   notes_.faults.push_back(dropped_.dropped(path_, "row"));
 }
 
@@ -210,15 +258,18 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
       order_(path, std::move(time), notes) {}
 
 void RowClock::take(RowBlock& rows) {
-  const std::size_t known = buffered_.size();
+  if (!begun_) keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
+  drop_repeats(rows, given_);
+  order_.take(rows, false);
+  drop_repeats(rows, ordered_);
+  if (!std::exchange(begun_, true)) bursts_ = bursts_of(rows.time_s);
+  spread_bursts(rows);
+}
+
+// Hands on all rows but those of the last burst.
+void RowClock::spread_bursts(RowBlock& rows) {
   buffered_.append(rows);
   std::swap(buffered_, rows);
-  order_.take(rows, known);
-  if (!std::exchange(begun_, true)) {
-    bursts_ = bursts_of(rows.time_s);
-    keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
-  }
-  if (!keep_repeats_) drop_repeats(rows);
   std::vector<double>& time_s = rows.time_s;
   std::size_t begin = 0;
   for (std::size_t end; (end = end_of_burst(rows, begin)) < rows.size(); begin = end) {
@@ -238,17 +289,19 @@ void RowClock::take(RowBlock& rows) {
 
 std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) const {
   std::size_t end = begin + 1;
-  while (end < rows.size() &&
-         (end - begin < bursts_.rows || rows.time_s[end] - rows.time_s[end - 1] <= bursts_.within_s))
-    ++end;
+  for (; end < rows.size(); ++end) {
+    const double step_s = rows.time_s[end] - rows.time_s[end - 1];
+    if (step_s > bursts_.within_s && (end - begin >= bursts_.rows || step_s >= bursts_.hole_s)) break;
+  }
   return end;
 }
 
-void RowClock::drop_repeats(RowBlock& rows) {
-  std::size_t kept = 1;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows.time_s[i] == rows.time_s[kept - 1] && same_values(rows, i, kept - 1)) continue;
-    rows.move_row(i, kept++);
+void RowClock::drop_repeats(RowBlock& rows, Row& last) {
+  if (keep_repeats_) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row row{rows.time_s[i], rows.cells[i]};
+    if (std::exchange(last, row) != row) rows.move_row(i, kept++);
   }
   repeated_ += rows.size() - kept;
   rows.keep_first(kept);
@@ -258,7 +311,8 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
   const double first_s = rows.time_s[begin], length_s = next_s - first_s;
   const std::size_t count = end - begin;
   double step_s = count == 1 ? length_s : length_s / static_cast<double>(count);
-  if (period_s_ > 0.0 && step_s > kHole * period_s_) {
+  const bool hole = count > 1 && next_s - rows.time_s[end - 1] >= bursts_.hole_s;
+  if (period_s_ > 0.0 && (hole || step_s > kHole * period_s_)) {
     step_s = period_s_;
   } else {
     period_s_ = step_s;
@@ -269,7 +323,11 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 }
 
 void RowClock::finish() {
+  RowBlock last_ones;
+  order_.take(last_ones, true);
   order_.finish();
+  drop_repeats(last_ones, ordered_);
+  spread_bursts(last_ones);
   const std::size_t rows = buffered_.size();
   const std::size_t end = end_of_burst(buffered_, 0),
                     last = end < rows ? end : 0;  // the last burst's first row
@@ -292,7 +350,9 @@ void RowClock::say() {
   if (spread_ == 0) return;
   notes_.notices.push_back(
       path_ + ": " + std::to_string(spread_) + " rows " +
-      (bursts_.within_s > 0.0 ? "come in bursts" : "have the time of the row before") +
+      (bursts_.within_s > 0.0 ? "come in bursts"
+       : bursts_.rows > 1     ? "have times as coarse as their steps"
+                              : "have the time of the row before") +
       " and are spread evenly up to the next time; --sample-rate HZ reads all rows as even");
 }
 

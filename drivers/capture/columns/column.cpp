@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -233,6 +234,11 @@ bool TableColumn::counts_rows() const {
   std::size_t other = 0;
   for (std::size_t i = 1; i < values.size(); ++i) other += values[i] - values[i - 1] != 1.0 ? 1 : 0;
   return values.size() >= kFewRows && other <= 1 && is_whole();
+}
+
+bool TableColumn::increases() const {
+  return values.size() >= kFewRows && is_numeric() &&
+         std::ranges::adjacent_find(values, std::greater_equal<>()) == values.end();
 }
 
 bool TableColumn::is_smooth() const {

@@ -64,6 +64,8 @@ struct TableColumn {
   [[nodiscard]] bool are_counts() const { return values.size() >= kFewRows && varies() && is_whole(); }
   // Integers that increase by one, as a number of the row.
   [[nodiscard]] bool counts_rows() const;
+  // Numbers, each larger than the one before, as of a clock or counter.
+  [[nodiscard]] bool increases() const;
   // Little change from row to row compared with the range, as of an angle. Von Neumann's ratio: mean squared
   // difference / variance; 2 for white noise.
   [[nodiscard]] bool is_smooth() const;

@@ -151,6 +151,11 @@ bool is_fraction_of_second(const TableSample& table, std::size_t place) {
          std::ranges::all_of(table.columns[place].values, [](double v) { return v >= 0.0 && v < 1.0; });
 }
 
+// Whole seconds may be the same in all first rows.
+bool stays_in_a_second(const TableSample& table, const TableColumn& column) {
+  return table.named && time_unit(column.unit) == 1.0 && column.is_whole() && !column.varies();
+}
+
 std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place) {
   const TableColumn& column = table.columns[place];
   if (column.is_empty()) return std::nullopt;
@@ -167,7 +172,8 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
   // Several rows may have one stamp; without a name a quantity that hardly changes is no time.
   const std::size_t each = table.named ? column.cells.size() : kFewRows;
   if (other_quantity || clock_digits || is_fraction_of_second(table, place) ||
-      column.values.size() != column.filled.size() || !goes_on(column.values, each, table.named))
+      column.values.size() != column.filled.size() ||
+      (!goes_on(column.values, each, table.named) && !stays_in_a_second(table, column)))
     return std::nullopt;
   out.time.unit = known_unit(table, column);
   out.units = {out.time.unit};
@@ -244,7 +250,8 @@ std::vector<TimeCandidate> times_of(const TableSample& table, const Rates& rates
     // Of a phone's sensors each has its own time, which rows of others lack.
     const bool of_sensor =
         !rates.empty() && column.words.first() == table.columns[rates[0].place].words.first();
-    const int here = 2 * (table.named ? rank_of(column) : 1) + (of_sensor ? 1 : 0);
+    const int rank_here = table.named && !stays_in_a_second(table, column) ? rank_of(column) : 1;
+    const int here = rank_of(column) == 0 && table.named ? 0 : 2 * rank_here + (of_sensor ? 1 : 0);
     if (here < rank || !covers(table, column, rates)) continue;
     const auto found = candidate_at(table, i);
     if (!found || (!table.named && !best.empty())) continue;

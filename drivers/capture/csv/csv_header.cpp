@@ -43,6 +43,7 @@ class Chooser {
                                       : form_.last_line + 1) {
     header_.layout = form_.layout;
     header_.separator = form_.separator;
+    header_.notation = form_.notation;
     header_.last_line = form_.last_line;
     for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
     if (form_.layout.only_header == layout.only_header) return;
@@ -57,6 +58,9 @@ class Chooser {
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      header_.is_clock.push_back(i == header_.time_place || i == header_.time_part ||
+                                 form_.sample.columns[i].increases());
     if (are_rates_of_several()) fail(kinds_);
     return std::move(header_);
   }

@@ -2,9 +2,9 @@
 #include "drivers/capture/csv/csv_piece.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "drivers/capture/checks/row_checks.h"
@@ -19,12 +19,6 @@
 namespace ifog {
 namespace {
 
-// Missing values of R, pandas, databases and spreadsheets.
-bool is_no_value(std::string_view cell) {
-  constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
-  return std::ranges::find(kWords, lower(std::string(cell))) != kWords.end();
-}
-
 struct Unreadable {
   std::string what;
 };
@@ -35,7 +29,7 @@ double number(const std::string& column, std::string_view cell, std::string_view
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) return HUGE_VAL;  // treated like infinity
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    if (is_no_value(cell)) return kMissing;
+    if (is_no_number(cell)) return kMissing;
     throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing"};
   }
   return value;
@@ -90,6 +84,7 @@ class Rows {
     piece_.rows.keep_first(0);
     piece_.rows.time_s.reserve(most);
     piece_.rows.lines.reserve(most);
+    piece_.rows.cells.reserve(most);
     piece_.rows.columns.resize(header.columns.size());
     for (std::vector<double>& column : piece_.rows.columns) column.reserve(most);
     piece_.impossible.resize(header.columns.size());
@@ -122,6 +117,7 @@ class Rows {
     const std::size_t at_place = piece_.places++;
     const char *at = line.data(), *const end = at + line.size();
     std::size_t& place = reached_ = 0;
+    std::size_t cells = 0;
     for (;; ++at) {
       while (separator_ == ' ' && at != end && *at == ' ') ++at;
       // Some writers end each row with a separator.
@@ -130,7 +126,8 @@ class Rows {
         break;
       if (place == to_.size())
         throw Unreadable{"more cells than the " + std::to_string(to_.size()) + " columns of the header"};
-      at = take(place, at, end, number);
+      const char* const cell = std::exchange(at, take(place, at, end, number));
+      if (!header_.is_clock[place]) cells = 31 * cells + std::hash<std::string_view>()({cell, at});
       ++place;
       if (at == end) break;
     }
@@ -144,6 +141,7 @@ class Rows {
       return;
     }
     piece_.rows.lines.push_back(number);
+    piece_.rows.cells.push_back(cells);
   }
 
   struct Place {
@@ -156,7 +154,7 @@ class Rows {
   // Parses the cell from `at` in a row that ends at `end`; returns the cell's end.
   const char* take(std::size_t place, const char* at, const char* end, std::size_t line) {
     const Place& to = to_[place];
-    if (to.values != nullptr) {
+    if (to.values != nullptr && header_.notation.thousands != '.') {
       // Fast path: the cell is a plain number.
       double value = 0.0;
       const auto [behind, error] = std::from_chars(at, end, value);
@@ -203,7 +201,7 @@ class Rows {
     const std::string_view text = *found;
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place];
-    const TimeDigits digits(text, separator_ != ',', header_.date_order);
+    const TimeDigits digits(text, header_.notation, header_.date_order);
     if (digits.is_date() && unit_s_ != 1.0)
       throw Unreadable{printable(name) + " is " + in_quotes(text) +
                        ", a date, which says its own unit, expected no other one of --time"};
@@ -219,7 +217,7 @@ class Rows {
 
   void keep(std::size_t place, std::string_view text, std::size_t line) {
     const Place& to = to_[place];
-    const PointDigits digits(text, separator_ != ',');
+    const PointDigits digits(text, header_.notation);
     const double value = to.impossible != nullptr ? number(header_.cells[place], text, digits)
                                                   : finite_number(digits).value_or(kMissing);
     const bool possible = std::isnan(value) || to.range.holds(value);
@@ -251,7 +249,7 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
     if (header.part_digits) time.part = cell_at(line, header.time_part, header.separator);
     const std::optional<std::string_view> first = time.text(header.part_digits);
     if (!first || first->empty()) continue;
-    return TimeStamps(TimeDigits(*first, header.separator != ',', header.date_order),
+    return TimeStamps(TimeDigits(*first, header.notation, header.date_order),
                       header.layout.time.value_or(CsvTime{}).unit_s());
   }
   return std::nullopt;

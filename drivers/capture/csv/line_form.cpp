@@ -90,11 +90,13 @@ struct Values {
   std::vector<std::string_view> numbers;
 };
 
-// End of a number that starts at `at`; `at` if there is none, as in "gyro2", "0x68" and "0b11".
+// End of a number or date that starts at `at`; `at` if there is none, as in "gyro2", "0x68" and "0b11".
 std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
   if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
   std::string_view rest = line.substr(at);
+  const std::string_view word = rest.substr(0, rest.find_first_of(",;| \t\"}])"));
+  if (is_date(word)) return at + word.size();
   if (rest.starts_with("0x") || rest.starts_with("0b")) return at;
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t digit = rest.find_first_not_of("-.");

@@ -193,7 +193,7 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
   for (auto line = lines.begin(); line != last.base(); ++line) {
     std::vector<std::string> cells = cells_of(line->text, '\t');
     if (cells.size() < 2) continue;
-    const auto step_s = finite_number(PointDigits(cells[1], true));
+    const auto step_s = finite_number(PointDigits(cells[1], {true}));
     if (cells[0] == "Delta_X" && step_s && *step_s > 0.0)
       comments.push_back("sample rate " + shortest(1.0 / *step_s));
     if (cells[0] == "Y_Unit_Label") {
@@ -244,15 +244,27 @@ bool choose_kind(CsvLayout& layout, std::vector<Line>& lines, Grid& grid) {
   return false;
 }
 
+// A cell with both marks, "1,234.5", says which of them is that of thousands in all others.
+Notation notation_of(const Grid& grid) {
+  Notation by{grid.separator() != ','};
+  for (const Row& row : grid.rows())
+    for (const std::string& cell : row.cells)
+      if (cell.find(',') < cell.size() && cell.find('.') < cell.size() && is_value(cell, grid.separator()) &&
+          by.thousands == '\0')
+        by.thousands = mark_of_thousands(cell, '\0');
+  return by;
+}
+
 // Cells of the first rows, by column.
-std::vector<std::vector<std::string>> first_cells(const Grid& grid, std::size_t from, std::size_t columns) {
+std::vector<std::vector<std::string>> first_cells(const Grid& grid, Notation by, std::size_t from,
+                                                  std::size_t columns) {
   std::vector<std::vector<std::string>> cells(columns);
   for (std::size_t i = from; i < grid.rows().size() && cells[0].size() < Grid::kSampleRows; ++i) {
     const Row& row = grid.rows()[i];
     if (row.comment || !row.is_as_wide(columns)) continue;
     for (std::size_t c = 0; c < columns; ++c) {
-      const std::string cell = c < row.cells.size() ? row.cells[c] : "";
-      const TimeDigits digits(cell, grid.separator() != ',');
+      const std::string cell = c < row.cells.size() && !is_no_number(row.cells[c]) ? row.cells[c] : "";
+      const TimeDigits digits(cell, by);
       cells[c].emplace_back(digits.is_date() ? std::string_view(cell) : std::string_view(digits));
     }
   }
@@ -269,7 +281,7 @@ bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayo
     const std::size_t columns = header.names.size();
     form.sample.named = !are_of_one_matrix(header.names);
     form.sample.set(header.names, units.size() >= columns ? units : header.units,
-                    first_cells(grid, header.last + 1, columns));
+                    first_cells(grid, form.notation, header.last + 1, columns));
   };
   const std::vector<std::string> wanted = wanted_names(layout);
   const std::vector<Header> above = grid.first() ? headers_above(lines, grid) : std::vector<Header>();
@@ -310,6 +322,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
   keep_kind(layout, lines, grid);
   form.separator = grid.separator();
+  form.notation = notation_of(grid);
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (!grid.rows()[i].comment && grid.rows()[i].cells.size() > kInputLimits.csv_columns)
       fail_at(path, lines[i].number,
@@ -324,7 +337,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
       names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
-    sample.set(names, {}, first_cells(grid, *grid.first(), names.size()));
+    sample.set(names, {}, first_cells(grid, form.notation, *grid.first(), names.size()));
     if (const Row* const above = *grid.first() > 0 ? &grid.rows()[*grid.first() - 1] : nullptr;
         above != nullptr && !above->comment && above->values == 0 && above->cells.size() > 1) {
       form.header_line = lines[*grid.first() - 1].number;

@@ -13,6 +13,7 @@ namespace ifog {
 
 struct TableForm {
   char separator = ',';
+  Notation notation;
   std::size_t header_line = 0;   // from 1; 0 without a header
   std::size_t last_line = 0;     // last line before the first row: header or row of units
   CsvLayout layout;              // as given, with the kind of rows in a log of several kinds without a header

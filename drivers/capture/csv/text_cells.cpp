@@ -121,9 +121,15 @@ std::string_view without_mark(std::string_view line) {
   return trimmed(line);
 }
 
+bool is_no_number(std::string_view cell) {
+  constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
+  return cell.substr(cell.starts_with('-') ? 1 : 0).starts_with("1.#") ||
+         std::ranges::find(kWords, lower(std::string(cell))) != kWords.end();
+}
+
 bool is_value(std::string_view cell, char separator) {
   if (is_date(cell)) return true;
-  const TimeDigits digits(cell, separator != ',');
+  const TimeDigits digits(cell, {separator != ','});
   const std::string_view text = digits;
   double value = 0.0;
   const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);

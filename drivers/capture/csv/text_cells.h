@@ -38,6 +38,8 @@ class Lines {
 // Removes a comment mark: "#", "%", "//".
 [[nodiscard]] std::string_view without_mark(std::string_view line);
 [[nodiscard]] inline bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); }
+// Missing values of R, pandas, databases, spreadsheets, and "-1.#IND" of Microsoft's C library.
+[[nodiscard]] bool is_no_number(std::string_view cell);
 // True for a number or date in the notation that goes with the separator.
 [[nodiscard]] bool is_value(std::string_view cell, char separator);
 

@@ -64,6 +64,8 @@ std::string foreign_text(std::string_view head) {
   if (line.ends_with(':') && has("\n---\n"))
     return "is YAML as rostopic echo prints it, expected a table; rostopic echo -p, or ros2 topic echo "
            "--csv, writes one";
+  if (line.starts_with('$') && has("\n$G") && (has("GGA,") || has("RMC,")) && !has("ROT,"))
+    return "is NMEA 0183 of a GNSS receiver, which has no rate of a gyro";
   if (line.starts_with("TIMESERIES ") && line.find(", SLIST,") != std::string_view::npos)
     return "is SLIST with several samples a line, expected one a line; the format TSPAIR of the same service "
            "has that";

@@ -106,20 +106,6 @@ std::optional<Moment> moment_of(std::string_view text, DateOrder order) {
   return moment;
 }
 
-// The mark between groups of three digits, "," in "1,234.5" and "." in "1.234,5"; 0 if there is none, or it may be the
-// decimal mark.
-char mark_of_thousands(std::string_view cell) {
-  const std::size_t first = cell.find_first_of(",.");
-  const char mark = first < cell.size() ? cell[first] : '\0';
-  const std::size_t last = cell.rfind(mark), other = cell.find(mark == ',' ? '.' : ',');
-  if (first == last && other == std::string_view::npos) return '\0';
-  for (std::size_t at = first; at <= last && at < cell.size(); at += 4)
-    if (cell[at] != mark || cell.substr(at + 1, 4).find_first_not_of("0123456789") < 3 ||
-        at + 4 > cell.size())
-      return '\0';
-  return last < other ? mark : '\0';
-}
-
 }  // namespace
 
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to, DateOrder order) {
@@ -148,25 +134,38 @@ std::optional<double> finite_number(std::string_view text) {
   return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
+char mark_of_thousands(std::string_view cell, char known) {
+  const std::size_t first = cell.find_first_of(",.");
+  const char mark = first < cell.size() ? cell[first] : '\0';
+  const std::size_t last = cell.rfind(mark), other = cell.find(mark == ',' ? '.' : ',');
+  if (mark != known && first == last && other == std::string_view::npos) return '\0';
+  for (std::size_t at = first; at <= last && at < cell.size(); at += 4)
+    if (cell[at] != mark || cell.substr(at + 1, 4).find_first_not_of("0123456789") < 3 ||
+        at + 4 > cell.size())
+      return '\0';
+  return last < other ? mark : '\0';
+}
+
+PointDigits::PointDigits(std::string_view cell, Notation by) : digits_(cell) {
   const std::string_view typographic = "\xE2\x88\x92";
-  if (cell.size() > made_.size() || cell.find_first_of(",Dd\xE2") == std::string_view::npos) return;
+  const bool points = by.thousands == '.';
+  if (cell.size() > made_.size() || (!points && cell.find_first_of(",Dd\xE2") == std::string_view::npos))
+    return;
   char* end = made_.data();
-  const char grouping = cell.find(',') < cell.size() ? mark_of_thousands(cell) : '\0';
+  const char grouping = points || cell.find(',') < cell.size() ? mark_of_thousands(cell, by.thousands) : '\0';
   for (std::size_t i = 0; i < cell.size(); ++i) {
     if (grouping != '\0' && cell[i] == grouping) continue;
     const bool minus = cell.substr(i).starts_with(typographic);
-    *end++ = minus                              ? '-'
-             : cell[i] == ',' && decimal_comma  ? '.'
-             : cell[i] == 'D' || cell[i] == 'd' ? 'E'
-                                                : cell[i];
+    *end++ = minus                                ? '-'
+             : cell[i] == ',' && by.decimal_comma ? '.'
+             : cell[i] == 'D' || cell[i] == 'd'   ? 'E'
+                                                  : cell[i];
     if (minus) i += typographic.size() - 1;
   }
   digits_ = {made_.data(), static_cast<std::size_t>(end - made_.data())};
 }
 
-TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order)
-    : PointDigits(cell, decimal_comma) {
+TimeDigits::TimeDigits(std::string_view cell, Notation by, DateOrder order) : PointDigits(cell, by) {
   const std::string_view date = date_in_digits(cell, made_, order);
   date_ = !date.empty();
   if (date_) digits_ = date;

@@ -32,11 +32,21 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
 // The number if the whole text is a finite number; else nullopt.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
+// How a table writes numbers. thousands: the mark between groups of three digits, if a cell has shown it; else 0.
+struct Notation {
+  bool decimal_comma = false;
+  char thousands = '\0';
+};
+
+// The mark between groups of three digits, "," in "1,234.5" and "." in "1.234,5"; 0 if there is none, or it may be the
+// decimal mark and is not `known`.
+char mark_of_thousands(std::string_view cell, char known);
+
 // Cell with a decimal point instead of a comma, without marks of thousands ("1,234.5"), with an ASCII minus sign, and E
 // for the exponent's D of Fortran.
 class PointDigits {
  public:
-  PointDigits(std::string_view cell, bool decimal_comma);
+  PointDigits(std::string_view cell, Notation by);
   PointDigits(const PointDigits&) = delete;
   PointDigits& operator=(const PointDigits&) = delete;
   operator std::string_view() const { return digits_; }
@@ -49,7 +59,7 @@ class PointDigits {
 // Cell of a time: digits of a date or of a number.
 class TimeDigits : public PointDigits {
  public:
-  TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order = DateOrder::either);
+  TimeDigits(std::string_view cell, Notation by, DateOrder order = DateOrder::either);
   [[nodiscard]] bool is_date() const { return date_; }
 
  private:

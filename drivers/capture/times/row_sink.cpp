@@ -23,8 +23,10 @@ double median_step_s(const std::vector<double>& time_s) {
 
 void RowBlock::append(RowBlock& rows) {
   if (size() == 0) return std::swap(*this, rows);
+  if (rows.size() == 0) return;
   time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
   lines.insert(lines.end(), rows.lines.begin(), rows.lines.end());
+  cells.insert(cells.end(), rows.cells.begin(), rows.cells.end());
   for (std::size_t c = 0; c < columns.size(); ++c)
     columns[c].insert(columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
 }
@@ -33,12 +35,14 @@ void RowBlock::move_row(std::size_t from, std::size_t to) {
   if (from == to) return;
   time_s[to] = time_s[from];
   if (!lines.empty()) lines[to] = lines[from];
+  if (!cells.empty()) cells[to] = cells[from];
   for (std::vector<double>& column : columns) column[to] = column[from];
 }
 
 void RowBlock::keep_first(std::size_t rows) {
   time_s.resize(rows);
   lines.resize(std::min(rows, lines.size()));
+  cells.resize(std::min(rows, cells.size()));
   for (std::vector<double>& column : columns) column.resize(rows);
 }
 
@@ -71,6 +75,7 @@ void RowBlock::split_off(std::size_t from, RowBlock& to) {
   to.columns.resize(columns.size());
   behind(time_s, to.time_s);
   behind(lines, to.lines);
+  behind(cells, to.cells);
   for (std::size_t c = 0; c < columns.size(); ++c) behind(columns[c], to.columns[c]);
 }
 

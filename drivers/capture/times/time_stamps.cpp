@@ -95,7 +95,7 @@ TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
 }
 
 std::optional<SaidTime> SaidTime::parse(std::string_view said) {
-  const TimeDigits digits(said, false);
+  const TimeDigits digits(said, {});
   const std::string_view text = digits;
   if (Plain time; read_plain(text, time))
     return SaidTime{static_cast<double>(time.whole),

@@ -114,6 +114,7 @@ class Checks:
             asleep.append(0.001 * i + pause)
         head = "time_s,gyro_x_dps,gyro_y_dps,gyro_z_dps"
         self.reads("late.csv", [head, *self.rows(lambda i, *dps: (late[i], *dps))], says=("come in bursts",))
+        self.reads("hole.csv", [head, *self.rows(lambda i, *dps: (late[i] + 60 * (2 * i > ROWS), *dps))], says=("come in bursts", "1 gap "))
         said = by_hand(self.file("asleep.csv", [head, *self.rows(lambda i, *dps: (asleep[i], *dps))]))[1]
         assert "bursts" not in said and "samples missing" in said, said
 
@@ -266,10 +267,11 @@ class Checks:
     def check_stamps(self):
         header = "time_s,rate_x_radps"
         self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
+        self.reads("faster.csv", [header, *self.rows(lambda i, x, y, z: (i * 0.005 - max(0, i - 2048) * 0.00025, x * RAD))], axes="x", says=("at 200 Hz until 10.24 s",))
         self.reads("windows.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 80 * 20 + i % 80 * 0.005:.6f}", x * RAD))], axes="x", says=())
         self.reads("same.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 7 * 0.035:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
         rows = self.rows(lambda i, x, y, z: (f"{i / RATE_HZ:.3f}", x * RAD))
-        self.reads("twice.csv", [header, *self.rows(lambda i, x, y, z: (f"{(i - (i % 37 == 36)) / RATE_HZ:.6f}", x * RAD))], axes="x", says=("have the time of the row before",))
+        self.reads("twice.csv", [header, *self.rows(lambda i, x, y, z: (f"{(i - (i % 37 == 36)) / RATE_HZ:.6f}", x * RAD))], axes="x", says=("have times as coarse as their steps", "at 200 Hz"))
         self.reads("repeated.csv", [header, *[row for i, row in enumerate(rows) for row in [row] * (2 if i % 80 == 5 else 1)]], axes="x", says=("50 rows repeat the row before",))
         self.reads("rollover.csv", ["t,gyro_x_dps", *self.rows(lambda i, x, y, z: ((4_294_000_000 + 5000 * i) % 2**32, x))], axes="x", says=("rolls over",))
         merged = [line for row in rows for line in (row + ",", *[f"{float(row.split(',')[0]) + k * 0.00125:.5f},,0.01" for k in (1, 2, 3)])]
@@ -381,9 +383,7 @@ class Checks:
         assert len(rates) == 200 and abs(rates[0] + math.radians(5)) < 1e-12 and not any(map(math.isnan, rates)), rates[:3]
 
     def check_files_of_others(self):
-        if not CASES.is_dir():
-            return
-        for path, axes, wanted, hz in (("bias_column_suggested/log.csv", "x", 0.212, None), ("merged_rows_gyro_between_accel/merged.csv.gz", "x", 0.344, None),
+        for path, axes, wanted, hz in () if not CASES.is_dir() else (("bias_column_suggested/log.csv", "x", 0.212, None), ("merged_rows_gyro_between_accel/merged.csv.gz", "x", 0.344, None),
                                        ("bursts_hilti/hilti.csv", "x", 0.688, None), ("counter_as_seconds/g370.csv", "x", 0.342, 200),
                                        ("increments_as_angle/vehicle_imu_0.csv.gz", "x", 0.344, None)):
             readings, said = by_hand(copy_of(CASES / path, self.folder), hz)

@@ -287,8 +287,24 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("time,gyro_x_dps\n", "59:59.{i},{x}") + rows_of("", "00:00.{i},{x}"),
        {"time 'time' in s", "a.csv:42: time rolls over, as an hour does"}},
       {rows_of("time_s,rate_radps\n", "0.{i},{x}") + rows_of("", "0.{i},{x}"),
-       {"a.csv:49: time_s begins again at 0.107 s, and 7 rows before are dropped, as after a clock was set "
-        "or"}},
+       {"a.csv:42: time_s begins again at 0.1 s, as after a clock was set or"}},
+      {rows_of("time_s,rate_radps\n", "0.{i},{x}", 600) + rows_of("", "0.5{i},{x}"),
+       {"a.csv:602: time_s begins again at 0.51 s, as after a clock was set or"}},
+      // A buffer that was not filled; rows of one time whose other cells differ, or only another clock.
+      {rows_of("time_s,rate_radps\n", "0.{i},{x}", 600) + rows_of("", "0,0"),
+       {"39 rows repeat the row before"}},
+      {rows_of("t (s),gx (deg/s),b\n", "0.{i},0.{i},{x}", 300) + "0.5,0.7,1\n0.5,0.7,2\n0.6,0,3\n",
+       {"1 rows have the time of the row before"}},
+      {rows_of("t (s),gx (deg/s),n\n", "0.{i},0.{i},{i}", 300) + "0.5,0.7,400\n0.5,0.7,401\n0.6,0,402\n",
+       {"1 row repeats the row before"}},
+      // ISO 8601 with one rate; thousands by the other column; Microsoft's NaN; whole seconds of many rows.
+      {rows_of("time,gz (deg/s)\n", "2026-05-01T12:00:00.{i}Z,0.{digit}"), {"time 'time' in s, rate_z 'gz"}},
+      {rows_of("# sample rate 1000\ntime;gz (deg/h)\n", "{i},000;4,3{digit}4.5"),
+       {"'time' in us, rate_z 'gz"}},
+      {rows_of("t (s),gz (deg/s)\n0.01,-1.#IND\n", "0.{i},{x}"), {"read as: time 't (s)' in s, rate_z"}},
+      {rows_of("t (s),gz (deg/s)\n", "7,{x}", 99) + rows_of("", "8,{x}", 99) + "9,0\n",
+       {"read as: time 't (s)' in s, rate_z"}},
+      {"$GPGGA,1,2*00\n$GPRMC,1,2*00\n", {"is NMEA 0183 of a GNSS receiver, which has no rate"}},
       {"time_s,rate_radps\n5,0\n4,0\n3,0\n2,0\n", {"a.csv:3: time_s is 4 s", "written backwards: 'tac'"}},
       // Spreadsheets of both orders.
       {rows_of("time,gyro_x_dps\n", "05/06/2023 12:00:00.{i},{x}"), {"read with the month first"}},

@@ -122,6 +122,10 @@ TEST_F(LcmLog, RefusesMessagesThatCannotBe) {
   add("IFOG_NOSE", sample(0, 1));
   add("IFOG_NOSE", sample(1, 3));
   EXPECT_EQ(refusal(), path_ + ": message 2 on IFOG_NOSE has another number of axes");
+  SetUp();  // one of many is damage
+  for (int n = 0; n < 200; ++n) n == 100 ? add("IFOG_NOSE", channel_t{}) : add("IFOG_NOSE", sample(n, 1));
+  finish();
+  EXPECT_EQ(read("IFOG_NOSE").size(), 199U);
 }
 
 // Two recorders in one folder: the second one's file begins before the first one's has ended. By the fitted

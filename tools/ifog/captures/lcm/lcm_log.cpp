@@ -64,18 +64,19 @@ struct ChosenLog {
   std::optional<PeerReader> peer;  // set if the messages are not ifog.rate_t
 };
 
+constexpr std::int64_t kLeap_ns = 1'000'000'000;  // of one clock, beyond the others
+
 // Limit of received times, so that differences do not overflow: 146 years.
 constexpr std::int64_t kMostTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
 
 bool times_can_be(const rate_t& message) {
   return std::abs(message.utime / 1000) < kMostTime_ns / 1'000'000 &&
-         std::abs(message.sensor_time_ns / 2) < kMostTime_ns / 2 &&
-         std::abs(message.seq / 2) < kMostTime_ns / 2;
+         std::abs(message.sensor_time_ns / 2) < kMostTime_ns / 2 && message.seq >= 0 &&
+         message.seq / 2 < kMostTime_ns / 2;
 }
 
-// Time from the sensor's clock if it has one, from the first message. If that clock jumps back while the
-// fitted time advances, it restarted or was set, and the fitted time continues it. If the fitted time stops
-// or was set too, the message's own step is used.
+// Time from the sensor's clock if it has one, from the first message. Where that clock restarted, was set or leaps alone,
+// the message's own step continues it, or the fitted time if that says that messages before this one are missing.
 class SensorSeconds {
  public:
   // Later than the previous one; -1 if neither clock advances.
@@ -86,15 +87,16 @@ class SensorSeconds {
     const std::int32_t own =
         sensor ? std::int32_t{rate_t::FLAG_SENSOR_CLOCK_SET} : std::int32_t{rate_t::FLAG_CLOCK_STEP};
     std::int64_t step_ns = now_ns - last_ns_;
-    if (started_ && (step_ns <= 0 || (message.flags & own) != 0)) {
-      const bool goes_on = !set && fitted_ns > last_fitted_ns_;
-      step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
-    }
+    const std::int64_t fitted_step_ns = set ? 0 : fitted_ns - last_fitted_ns_, told_ns = step_of(message);
+    const bool leaps = told_ns > 0 && step_ns > kLeap_ns + std::max(told_ns, fitted_step_ns);
+    if (started_ && (step_ns <= 0 || leaps || sensor != sensor_ || (message.flags & own) != 0))
+      step_ns = fitted_step_ns > told_ns + told_ns / 2 ? fitted_step_ns : told_ns;
     if (!std::exchange(started_, true))
       step_ns = 0;
     else if (step_ns <= 0 || step_ns > kMostTime_ns - elapsed_ns_)
       return -1.0;
     elapsed_ns_ += step_ns;
+    sensor_ = sensor;
     last_ns_ = now_ns;
     last_fitted_ns_ = fitted_ns;
     last_seq_ = message.seq;
@@ -107,7 +109,7 @@ class SensorSeconds {
     const bool known = message.seq > last_seq_ && message.dt > 0.0 && message.dt < 1e9;
     return known ? std::llround(message.dt * 1e9) : 0;
   }
-  bool started_ = false;
+  bool started_ = false, sensor_ = false;  // sensor_: the last time was by its clock
   std::int64_t elapsed_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0;
 };
 
@@ -127,6 +129,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   const std::string &path = chosen.path, &wanted = chosen.rates;
   LcmEvents log(chosen.source.name());
   std::size_t number = 0, axes = 0, left_out = 0;
+  Fault damaged;
   SensorSeconds seconds;
   InOrder<MeasuredRate> order;
   LcmLoss way;
@@ -143,26 +146,32 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       if (others) others(event->channel, event->data);
       continue;
     }
-    const auto refuse = [&](const std::string& why) {
-      throw refusal("{}: message {} on {} {}", path, number, wanted, why);
+    const auto drop = [&](const std::string& why) {
+      damaged.add(number, "message " + std::to_string(number) + " on " + wanted + " " + why);
     };
     const auto take = [&](MeasuredRate&& message) {
-      if (axes == 0) axes = message.raw.size();
-      if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
-      if (message.raw.size() != axes) refuse("has another number of axes");
-      if (!times_can_be(message)) refuse("has a time or number that cannot be");
+      const std::size_t here = message.raw.size();
+      if (here == 0 || here > 3) return drop("has " + std::to_string(here) + " axes, expected 1 to 3");
+      if (axes != 0 && here != axes) return drop("has another number of axes");
+      if (!times_can_be(message)) return drop("has a time or number that cannot be");
+      axes = here;
       way.take(message);
       order.take(std::move(message), hand_on);
     };
     if (chosen.peer) {
       if (!chosen.peer->take(event->data, take))
-        refuse("is no " + std::string(chosen.peer->type().name) + " that can be");
+        drop("is no " + std::string(chosen.peer->type().name) + " that can be");
       continue;
     }
-    MeasuredRate message;
-    if (!decode_message<rate_t>(event->data, message)) refuse("is no ifog.rate_t of this version");
-    take(std::move(message));
+    if (MeasuredRate message; decode_message<rate_t>(event->data, message))
+      take(std::move(message));
+    else
+      drop("is no ifog.rate_t of this version");
   }
+  if (kRowsAFault * damaged.count > number) throw refusal("{}: {}", path, damaged.first);
+  if (damaged.count > 0)
+    warn("{}: {}; {}\n", path, damaged.first,
+         damaged.count == 1 ? "it is dropped" : std::to_string(damaged.count) + " such messages are dropped");
   order.flush(hand_on);
   if (way.had_two_publishers())
     warn(
