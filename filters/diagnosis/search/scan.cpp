@@ -141,14 +141,6 @@ std::vector<Scored> Scan::score(const FittedModel& base, bool thorough, const No
   return scored;
 }
 
-double Scan::correlation(const std::vector<Candidate>& base, const Candidate& one, const Candidate& other,
-                         const NoiseShape& shape) const {
-  Columns both(columns_.rows(), 2);
-  both << regressor(data_, one), regressor(data_, other);
-  const Columns projected = project(base, shape, both).columns;
-  return projected.col(0).normalized().dot(projected.col(1).normalized());
-}
-
 Eigen::VectorXd Scan::correlations(const std::vector<Candidate>& base, const Candidate& effect,
                                    const NoiseShape& shape) const {
   Columns both(columns_.rows(), columns_.cols() + 1);

@@ -38,8 +38,6 @@ class Scan {
   // Of each candidate with `effect`, whitened, and with `base` projected out.
   [[nodiscard]] Eigen::VectorXd correlations(const std::vector<Candidate>& base, const Candidate& effect,
                                              const NoiseShape& shape) const;
-  [[nodiscard]] double correlation(const std::vector<Candidate>& base, const Candidate& one,
-                                   const Candidate& other, const NoiseShape& shape) const;
 
   // Adds natural pairs whose effects are both in the library.
   void pair(const std::vector<NaturalPair>& pairs);

@@ -292,6 +292,7 @@ class EffectSearch {
     std::vector<Candidate> seen = {model_.effects[i]};
     std::vector<Scored> scored = scan_.score(rest, true, &model_.noise.shape);
     std::erase_if(scored, [](const Scored& each) { return each.with.has_value(); });
+    find_step_instead(result, i, rest, scored);
     const Eigen::VectorXd correlations =
         scan_.correlations(rest.effects, model_.effects[i], model_.noise.shape);
     for (std::size_t k = 0; k < scored.size(); ++k)
@@ -306,23 +307,24 @@ class EffectSearch {
       if (seen.size() > 5) break;
       result.alternatives.push_back({i, each.candidate, each.correlation, loss});
     }
-    find_step_instead(result, i, rest);
   }
 
   // A single event may be both: what the channel did there, or a jump, as of a gyro that is switched off and on.
-  void find_step_instead(SearchResult& result, std::size_t i, const FittedModel& rest) const {
-    if (data_.grid.dwells || model_.effects[i].form == Form::kStep) return;
-    const std::vector<Scored> steps = scan_.steps(rest);
-    if (steps.empty()) return;
-    const Candidate& step = std::ranges::max(steps, {}, &Scored::ratio).candidate;
+  // scored: all candidates, in their order.
+  void find_step_instead(SearchResult& result, std::size_t i, const FittedModel& rest,
+                         const std::vector<Scored>& scored) const {
+    const std::vector<Scored> steps = data_.grid.dwells ? std::vector<Scored>{} : scan_.steps(rest);
+    const auto own = std::ranges::find_if(
+        scored, [&](const Scored& each) { return each.candidate.same_shape(model_.effects[i]); });
+    if (steps.empty() || own == scored.end()) return;
     std::vector<Candidate> instead = rest.effects;
-    instead.push_back(step);
+    instead.push_back(std::ranges::max(steps, {}, &Scored::ratio).candidate);
     const FittedModel model = fitted(std::move(instead), model_.noise.shape);
     const double loss = 2.0 * (model_.noise.log_likelihood - model.noise.log_likelihood);
     if (loss > kLikeness || !step_persists(data_, model)) return;
-    const NoiseShape& shape = model_.noise.shape;
-    result.alternatives.push_back(
-        {i, step, scan_.correlation(rest.effects, model_.effects[i], step, shape), loss});
+    const Candidate& step = model.effects.back();
+    const Eigen::VectorXd alike = scan_.correlations(rest.effects, step, model_.noise.shape);
+    result.alternatives.push_back({i, step, alike[own - scored.begin()], loss});
   }
 
   const BlockData& data_;
