@@ -183,7 +183,7 @@ class Checks:
                 (["ifog", "allan", "--tau", ""], set()),
                 (["ifog", "allan", "--driver", "kv"], {"kvh1750"}), (["ifog", "drivers", "kv"], {"kvh1750"}),
                 (["ifog", "convert", "--driver", "kvh1750", "--option", "ra"], {"rate_hz="}),
-                (["ifog", "convert", "--dbc", "x.dbc", "--option", "si"], {"signal="}),
+                (["ifog", "convert", "--dbc", "x.dbc", "--option", "signa"], {"signal="}),
                 (["ifog", "denoise", "--config", "reference.toml", "--sensor", ""], {"nose"}),
                 (["ifog", "denoise", "--config", "kvh1"], {"kvh1750-serial.toml"}), (["ifog", "allan", "net"], {"network.toml"}),
                 (["ifogd", "--c"], {"--config", "--check"}), (["ifogd", "--config", "ne"], {"network.toml"})):
