@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drivers/capture/checks/row_clock.h"
+#include "drivers/capture/checks/row_rate.h"
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/times/row_sink.h"
@@ -18,19 +19,6 @@ namespace ifog {
 
 // "rate_radps is '1e9', which no sensor measures, expected …".
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
-
-// Whether rows come at one rate. Analyses assume an even clock, which a device or logger may change.
-class RowRate {
- public:
-  void take(const RowBlock& rows);
-  // "rows come at 100 Hz until 12.5 s and at 105 Hz from there on: …"; "" for one rate, up to 1 %.
-  [[nodiscard]] std::string change_in_words() const;
-
- private:
-  TimeOrigin origin_;
-  std::vector<double> times_;                // of the present window
-  std::vector<double> begins_s_, period_s_;  // of each window before
-};
 
 class RowChecks {
  public:

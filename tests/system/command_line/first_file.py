@@ -267,7 +267,6 @@ class Checks:
     def check_stamps(self):
         header = "time_s,rate_x_radps"
         self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
-        self.reads("faster.csv", [header, *self.rows(lambda i, x, y, z: (i * 0.005 - max(0, i - 2048) * 0.00025, x * RAD))], axes="x", says=("at 200 Hz until 10.24 s",))
         self.reads("windows.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 80 * 20 + i % 80 * 0.005:.6f}", x * RAD))], axes="x", says=())
         self.reads("same.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 7 * 0.035:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
         rows = self.rows(lambda i, x, y, z: (f"{i / RATE_HZ:.3f}", x * RAD))

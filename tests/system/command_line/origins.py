@@ -344,6 +344,18 @@ class Checks:
         # The Allan deviation of both halves is independent of their times.
         assert moved["adev_radps"] == axis["adev_radps"]
 
+    def check_another_rate_is_said_and_losses_are_none(self):
+        """200 Hz and then 210 Hz, as of a logger that was set anew; 200 Hz of which half lose one row in twenty."""
+        draw = random.Random(3)
+        rate = [draw.gauss(0, 1e-5) for _ in range(8000)]
+        for name, rows, told in (("faster", [(i * 0.005 - max(0, i - 4000) * 0.000238095, r) for i, r in enumerate(rate)], True),
+                                 ("lossy", [(i * 0.005, r) for i, r in enumerate(rate) if i < 4000 or i % 20], False)):
+            path = self.folder / f"{name}.csv"
+            path.write_text("time_s,rate_radps\n" + "".join(f"{t:.6f},{r!r}\n" for t, r in rows))
+            said = ran("allan", path)
+            assert ("rows come at 200 Hz until 20" in said.stderr + said.stdout) == told, said.stderr
+            assert ("gaps in the time column" in said.stderr + said.stdout) != told, said.stderr
+
     def check_a_clock_that_is_set_is_said(self):
         """From seconds since power-up to seconds since 1970."""
         ns, half = self.series["even"][0], ROWS // 2
