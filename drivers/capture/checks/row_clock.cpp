@@ -259,9 +259,8 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
 
 void RowClock::take(RowBlock& rows) {
   if (!begun_) keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
-  drop_repeats(rows, given_);
+  drop_repeats(rows);
   order_.take(rows, false);
-  drop_repeats(rows, ordered_);
   if (!std::exchange(begun_, true)) bursts_ = bursts_of(rows.time_s);
   spread_bursts(rows);
 }
@@ -296,12 +295,12 @@ std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) cons
   return end;
 }
 
-void RowClock::drop_repeats(RowBlock& rows, Row& last) {
+void RowClock::drop_repeats(RowBlock& rows) {
   if (keep_repeats_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row row{rows.time_s[i], rows.cells[i]};
-    if (std::exchange(last, row) != row) rows.move_row(i, kept++);
+    if (std::exchange(last_, row) != row) rows.move_row(i, kept++);
   }
   repeated_ += rows.size() - kept;
   rows.keep_first(kept);
@@ -326,7 +325,6 @@ void RowClock::finish() {
   RowBlock last_ones;
   order_.take(last_ones, true);
   order_.finish();
-  drop_repeats(last_ones, ordered_);
   spread_bursts(last_ones);
   const std::size_t rows = buffered_.size();
   const std::size_t end = end_of_burst(buffered_, 0),

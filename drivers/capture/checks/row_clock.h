@@ -49,8 +49,8 @@ class RowOrder {
   // Times of the first row of the present recording, of the last row and the one before, if any.
   double first_s_ = 0.0, last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
   std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
-  std::size_t falling_ = 0,
-              joined_ = 0;  // times back that decrease; recordings in the file, except the first
+  std::size_t falling_ = 0;          // times back that decrease
+  std::size_t joined_ = 0;           // recordings in the file, except the first
   RowBlock buffered_;
   Fault dropped_;
   bool set_ = false;  // a set clock was reported
@@ -75,7 +75,7 @@ class RowClock {
 
  private:
   using Row = std::pair<double, std::size_t>;  // time and cells
-  void drop_repeats(RowBlock& rows, Row& last);
+  void drop_repeats(RowBlock& rows);
   void spread_bursts(RowBlock& rows);
   // End of the burst that starts at `begin`; the number of rows if more of it may follow.
   [[nodiscard]] std::size_t end_of_burst(const RowBlock& rows, std::size_t begin) const;
@@ -93,7 +93,7 @@ class RowClock {
   double period_s_ = 0.0;  // sample period of the last burst or single row
   std::size_t spread_ = 0, repeated_ = 0;
   bool begun_ = false;
-  Row given_{kMissing, 0}, ordered_{kMissing, 0};  // the last ones
+  Row last_{kMissing, 0};  // before order_
 };
 
 }  // namespace ifog

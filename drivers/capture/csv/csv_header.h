@@ -29,8 +29,7 @@ struct CsvHeader {
   std::size_t time_part = kNone;   // second cell of the time: decimal digits or a time of day
   std::optional<int> part_digits;  // of that cell, if any; 0: a time of day
   DateOrder date_order = DateOrder::either;
-  std::vector<bool>
-      is_clock;  // by cell: a time or counter, which increases from row to row even where the rest repeats
+  std::vector<bool> is_clock;        // by cell: a time or counter, which increases where the rest repeats
   std::size_t only_place = kNone;    // cell that decides whether a row is read
   std::vector<std::string> notices;  // how a foreign header was read, and which rows
 };

@@ -55,8 +55,7 @@ struct RowBlock {
   std::vector<std::vector<double>> columns;
   TimeOrigin origin{};               // origin of time_s, equal in all blocks
   std::vector<std::size_t> lines{};  // of each row in its text; empty without lines
-  std::vector<std::size_t>
-      cells{};  // hash of each row's text apart from clocks and counters; empty without lines
+  std::vector<std::size_t> cells{};  // hash of each row's text but for clocks; empty without lines
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   // Appends rows; `rows` has unspecified values afterwards.

@@ -72,6 +72,37 @@ TEST(Diagnose, ALagOfTwoTimeConstants) {
   EXPECT_NEAR(sum, 210.0, 15.0);
 }
 
+// A MEMS gyro that was off for three minutes and came back with another bias and colder (an MPU6050, sunsided/sensor-fusion):
+// nothing tells the jump from the temperature, and of a gyro that was only colder the jump alone is left.
+TEST(Diagnose, AJumpExplainsWhatAChannelThatChangedOnceDoes) {
+  const auto has_step = [](const Diagnosis& d) {
+    return std::ranges::any_of(d.indistinguishable, [](const Indistinguishable& each) {
+      return each.effects[1].form == "step" && each.separate_by.find("not only at 9") != std::string::npos;
+    });
+  };
+  for (const bool colder : {true, false}) {
+    Sensor s = quiet(31);
+    for (std::size_t i = 0; i < s.rate.size(); ++i) {
+      const bool after = i >= 7500;
+      s.time[i] += after ? 200.0 : 0.0;
+      s.rate[i] += after ? 1e-6 : 0.0;
+      s.temperature[i] = 25.0 - (after && colder ? 4.0 : 0.0) + 0.3 * (s.supply[i] - 12.0) +
+                         0.05 * gaussian(static_cast<std::uint32_t>(i), 6, 31);
+    }
+    const Diagnosis d = diagnose({s.record()}, {});
+    ASSERT_EQ(d.effects.size(), 1U) << colder;
+    EXPECT_EQ(d.effects[0].effect.form, colder ? "linear" : "step");
+    EXPECT_EQ(has_step(d), colder);
+  }
+  Sensor swings = quiet(32);
+  for (std::size_t i = 0; i < swings.rate.size(); ++i)
+    swings.rate[i] += 3e-7 * (swings.temperature[i] - 25.0);
+  const Diagnosis d = diagnose({swings.record()}, {});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].effect.channel, "temperature_degC");
+  EXPECT_FALSE(has_step(d));
+}
+
 // Hysteresis: said to be one, not corrected, and counted into the heading that is promised.
 TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   Sensor s = quiet(31);
