@@ -14,7 +14,7 @@ namespace ifog {
 // Angle at each instant in (rad/s × sample): running sum of the rate minus its mean; each part starts at
 // zero. Each entry is rounded once (sum in two doubles). So 10⁸ samples whose bias is a million times the
 // noise keep nine digits of the deviation at one sample. A part is one stretch, or several with the holes
-// between them filled, where that changes no variance of the Allan family by more than 2 %.
+// between them filled, where that changes no variance of the Allan family by more than 2 % and the rate does not step.
 class AngleSum {
  public:
   enum class Holes { kFilledIfNegligible, kFilled };  // Stretch::lost
