@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kBus =
     "BO_ 1 A: 8 X\n SG_ S M : 0|4@1+ (1,0) [0|0] \"\" X\n SG_ N : 4|4@1+ (1,0) [0|0] \"\" X\n"
     " SG_ X m1 : 8|32@1- (1,0) [0|0] \"rad/s\" X\n SG_ Y m2 : 15|33@0- (1E-6,0) [0|0] \"deg/s\" X\n"
+    " SG_ Y_Sign : 63|1@1+ (1,0) [0|0] \"\" X\n"
     "BO_ 2 B: 64 X\n SG_ Z : 300|64@1- (1,0) [0|0] \"rad/s\" X\n SG_ N : 3|4@0+ (1,0) [0|0] \"\" X\n"
     " SG_ C : 16|32@1+ (1,0) [0|0] \"us\" X\n"
     "BO_ 2147483651 T: 2 X\n SG_ T : 7|16@0- (0.01,0) [0|0] \"degC\" X\n"
@@ -26,12 +27,14 @@ const ifog::dbc::Picks& picks() {
   const auto pick = [&](std::size_t m, std::size_t s) {
     return Pick{&picks.database.messages[m], &picks.database.messages[m].signals[s]};
   };
-  picks.axes = {{"x", pick(0, 2), 1.0}, {"y", pick(0, 3), 0.017}, {"z", pick(1, 0), 1.0}};
+  picks.axes = {{"x", pick(0, 2), 1.0, nullptr},
+                {"y", pick(0, 3), 0.017, pick(0, 4).signal},
+                {"z", pick(1, 0), 1.0, nullptr}};
   picks.counter = {pick(0, 1), pick(1, 1)};
   picks.counter_modulus = 16;
   picks.time = pick(1, 2);
   picks.seconds_per_unit = 1e-6;
-  picks.environments = {{"temperature_degC", pick(2, 0)}};
+  picks.environments = {{"temperature_degC", pick(2, 0), {}}};
   return picks;
 }
 

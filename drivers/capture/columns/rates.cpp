@@ -141,7 +141,8 @@ std::vector<Rates> sensors_by_name(const TableSample& table, bool references) {
   const auto name_of = [&](const RateCandidate& column) { return table.columns[column.place].name; };
   for (auto& [stem, columns] : sensors)
     if (columns.size() == 3 && columns[0].axis.empty() &&
-        std::ranges::all_of(columns, [&](const auto& each) { return name_of(each) == name_of(columns[0]); }))
+        std::ranges::all_of(
+            columns, [&, name = name_of(columns[0])](const auto& each) { return name_of(each) == name; }))
       name_axes(columns);
   together.clear();
   std::size_t most = 0;
@@ -210,8 +211,8 @@ std::vector<Rates> sensors_by_place(const TableSample& table, const std::optiona
   // Of overlapping ones the one whose columns scatter most alike.
   std::ranges::stable_sort(sensors, {}, [&](const Rates& axes) {
     const auto [least, most] =
-        std::ranges::minmax({scatter(table.columns[axes[0].place]), scatter(table.columns[axes[1].place]),
-                             scatter(table.columns[axes[2].place])});
+        std::minmax({scatter(table.columns[axes[0].place]), scatter(table.columns[axes[1].place]),
+                     scatter(table.columns[axes[2].place])});
     return most / least;
   });
   std::vector<Rates> apart;
