@@ -51,7 +51,7 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
 void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
   Lanes likely = Lanes::Zero();
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-    if (!(nats[a] > 0.0)) continue;
+    if (!(now.mask[a] > 0.0)) continue;
     const double often = (0.5 * h + c.times[a]) / (h + age_);
     const double begun = often * exponential(std::min(nats[a], kEvidence));
     likely[a] = begun / (begun + 1.0 - often);
@@ -86,7 +86,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
   const Lanes limit = c.spread * n * likely, square = c.shrinks * c.sum.square();
-  if ((square > limit).any()) expect(c, h, (square - limit) / (n * likely), now);
+  expect(c, h, (square - limit) / (n * likely), now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;
