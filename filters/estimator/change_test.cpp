@@ -56,7 +56,7 @@ void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& n
     const double begun = often * exponential(std::min(nats[a], kEvidence));
     likely[a] = begun / (begun + 1.0 - often);
   }
-  c.times += now.mask * likely;
+  c.times += (nats > 0.0).select(now.mask * likely, 0.0);
   change_variance_ = change_variance_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
 }
 

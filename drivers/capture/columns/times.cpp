@@ -57,6 +57,8 @@ std::string known_unit(const TableSample& table, const TableColumn& column) {
   // Xsens: a clock of 10 kHz; of a DOT, which sends 120 samples/s at most, of 1 MHz.
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return step < 1e6 / 120.0 - 1.0 ? "100us" : "us";
+  const std::string last = column.name.substr(column.name.rfind('_') + 1);
+  if (time_unit(last) && !says(last, Role::no_rate)) return last;
   for (const std::string& word : words.words)
     for (const char* unit : {"s", "ms", "us", "ns"})
       if (time_unit(word) == seconds_a(unit)) return unit;
@@ -293,7 +295,7 @@ std::string whole_times_notice(const TableColumn& column, const CsvTime& time) {
     return "";
   const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
   const bool decimals = column.filled[0].find('.') != std::string::npos;
-  if (decimals || (step != 1.0 && (!time.unit.empty() || time_unit(column.stated)))) return "";
+  if (decimals || (step != 1.0 && time_unit(column.unit))) return "";
   return printable(time.header) + " is whole numbers, " + shortest(step) +
          " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms") +
          (step == 1.0 ? "; if they count the rows: --sample-rate HZ" : "");
