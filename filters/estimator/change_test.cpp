@@ -46,8 +46,8 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   }
 }
 
-// Bayes: the prior probability of a change over the horizon is its average at this rest. A sum that
-// contradicts a change counts as none.
+// Bayes: the prior probability of a change over the horizon is its average at this rest, to which a sum that contradicts
+// one adds nothing.
 void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
   Lanes likely = Lanes::Zero();
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {

@@ -352,7 +352,8 @@ bool Engine::rests(const Step& s) const noexcept {
 void Engine::learn(const Step& s) noexcept {
   if (!settings_.follow_manoeuvres) return;
   const bool at_rest = (s.out.flags & kAtRest) != 0;
-  if (s.dt_s > kShortGap * period_s_ || s.noise_scale != 1.0) noise_.break_off();
+  if (s.noise_scale != 1.0) noise_.break_off();
+  if (s.dt_s > kShortGap * period_s_) noise_.gap();
   if (!s.outlier && (at_rest || follow_.moving))
     noise_.learn(s.in.rate_radps, s.sample.valid, at_rest, *rest_);
 }

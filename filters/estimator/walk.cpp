@@ -24,6 +24,8 @@ constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 6.7;
 // First long octave, 64 samples: there the angle of shaking is bounded, and output filters are faster.
 constexpr std::size_t kLong = 6;
+// Octave that must have been seen, 256 samples: the longest one of a stretch without gaps.
+constexpr std::size_t kJudged = 8;
 // Difference of -2 log-likelihood that refutes: e^6.
 constexpr double kSurely = 12.0;
 // Difference of -2 log-likelihood of one standard error.
@@ -80,7 +82,18 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
   if (std::exchange(learn_, learn) != learn) break_off();
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
-  return ++in_stretch_ >= stretch_ ? judge() : std::nullopt;
+  in_stretch_ += 1.0;
+  return suffices() ? judge() : std::nullopt;
+}
+
+bool Walk::measured(const Allan& allan) const noexcept {
+  return allan.counts[0] >= 0.25 * kIndependent * stretch_;
+}
+
+bool Walk::suffices() const noexcept {
+  return in_stretch_ >= stretch_ && std::ranges::all_of(lately_, [&](const Allan& allan) {
+           return !measured(allan) || allan.counts[kJudged] >= kFewest;
+         });
 }
 
 void Walk::add(std::size_t axis, double rate) noexcept {
@@ -165,7 +178,7 @@ std::optional<Walk::Found> Walk::judge() noexcept {
   Found found{{}, ratio_, true};
   for (std::size_t a = 0; noise && a < kMaxAxes; ++a) {
     const Allan& allan = lately_[a];
-    if (allan.counts[0] < 0.25 * kIndependent * stretch_) continue;
+    if (!measured(allan)) continue;
     double level = 0.0;
     for (std::size_t first = 0; first <= kMostColour && level == 0.0; ++first) {
       level = white_noise(allan, trial, first);

@@ -95,6 +95,7 @@ void settle_unit(TimeCandidate& found, const std::vector<double>& values) {
         rate_hz < 10.0 * kFastest_hz) {
       found.units = {unit};
       found.time.unit = unit;
+      if (rate_hz < kSlowest_hz) found.time.remark = remark_on(found.time, step);
       return;
     }
     if (rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz) found.units.push_back(unit);
@@ -295,7 +296,7 @@ std::string whole_times_notice(const TableColumn& column, const CsvTime& time) {
     return "";
   const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
   const bool decimals = column.filled[0].find('.') != std::string::npos;
-  if (decimals || (step != 1.0 && time_unit(column.unit))) return "";
+  if (decimals || (step != 1.0 && (!time.unit.empty() || time_unit(column.stated)))) return "";
   return printable(time.header) + " is whole numbers, " + shortest(step) +
          " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms") +
          (step == 1.0 ? "; if they count the rows: --sample-rate HZ" : "");

@@ -7,7 +7,6 @@
 
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
@@ -65,18 +64,11 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
 }
 
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid) {
-  const std::size_t channel = *data.index_of(loop.channel);
-  Columns parts(static_cast<Eigen::Index>(grid.size()), 3);
-  Candidate linear;
-  linear.channel = channel;
-  parts << hysteresis_loop(data, channel, loop.half_width), Eigen::VectorXd::Ones(parts.rows()),
-      regressor(data, linear);
-  for (std::size_t b = 0; b < grid.size(); ++b)
-    if (!grid.valid[b]) parts.row(static_cast<Eigen::Index>(b)).setZero();
-  const Projection line(parts.rightCols(2));
-  Eigen::VectorXd bends = parts.col(0);
-  line.take_out_of(bends);
-  grid.error -= loop.coefficient * bends;
+  const Eigen::VectorXd column = hysteresis_loop(data, *data.index_of(loop.channel), loop.half_width);
+  for (std::size_t b = 0; b < grid.size(); ++b) {
+    const auto row = static_cast<Eigen::Index>(b);
+    if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
+  }
 }
 
 std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vector<Candidate>& model,

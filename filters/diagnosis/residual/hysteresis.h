@@ -17,8 +17,7 @@ namespace ifog {
 // Hysteresis, 1989): within ± half_width, by block. Starts at zero because the history is unknown.
 Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, double half_width);
 
-// Subtracts a channel's loop from the error of the grid's valid blocks, but not its mean and the line through it: what
-// the model can describe is fitted to what the daemon sees, which is the error with the loop.
+// Subtracts a channel's loop from the error of the grid's valid blocks.
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid);
 
 // Loop of a smooth channel that, in place of the model's effects of that channel, explains so much more of the error
