@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "filters/diagnosis/cleaning/reference_delay.h"
 #include "filters/diagnosis/cleaning/series_fit.h"
 
 namespace ifog {
@@ -28,35 +27,20 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
   return Samples(std::span<const double>(corrected.data(), measured.size()));
 }
 
-// The other axes as records, each with its reference aligned.
-OwnedRecords aligned_others(const Record& record) {
-  std::vector<Record> axes;
-  for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
-    Record axis;
-    axis.name = record.other_axes[a].name;
-    axis.time_s = record.time_s;
-    axis.rate_radps = record.other_axes[a].values;
-    if (a < record.other_references.size()) axis.reference_radps = record.other_references[a];
-    axis.origin = record.origin;
-    axes.push_back(std::move(axis));
-  }
-  return align_references(std::move(axes));
-}
-
 }  // namespace
 
 OwnedRecords with_other_axes(OwnedRecords given) {
   const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
   if (!std::ranges::all_of(given.records, referenced)) return given;
   for (Record& record : given.records) {
-    const OwnedRecords others = aligned_others(record);
     std::vector<std::span<const double>> along{record.reference_radps};
-    for (const Record& other : others.records)
-      if (moves(other.reference_radps)) along.push_back(other.reference_radps);
-    for (const Record& other : others.records) {
-      RecordChannel axis{other.name, other.rate_radps};
-      if (moves(other.reference_radps))
-        axis.values = given.columns.emplace_back(less_its_own(axis.values, other.reference_radps, along));
+    for (const std::span<const double> reference : record.other_references)
+      if (moves(reference)) along.push_back(reference);
+    for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
+      RecordChannel axis = record.other_axes[a];
+      if (a < record.other_references.size() && moves(record.other_references[a]))
+        axis.values =
+            given.columns.emplace_back(less_its_own(axis.values, record.other_references[a], along));
       record.channels.push_back(axis);
     }
   }

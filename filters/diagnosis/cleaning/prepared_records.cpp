@@ -16,7 +16,7 @@ OwnedRecords cleaned(const std::vector<Record>& captures) {
   check_columns(captures);
   OwnedRecords channels = with_differences(
       repair_channels(with_unwrapped_angles(with_readings_alone(with_even_stamps(captures)))));
-  return without_turns(with_other_axes(align_references(without_leaping_rates(std::move(channels)))));
+  return without_turns(with_other_axes(without_leaping_rates(align_references(std::move(channels)))));
 }
 
 }  // namespace

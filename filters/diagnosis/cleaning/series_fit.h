@@ -14,7 +14,6 @@ namespace ifog {
 struct SeriesFit {
   Eigen::VectorXd coefficients;
   double square = 0.0;  // of the residual
-  double last_variance = 0.0;
 };
 
 // Rows without a missing value.
@@ -35,9 +34,6 @@ inline SeriesFit least_squares(const Columns& columns, const std::vector<Eigen::
   SeriesFit fit;
   fit.coefficients = equations.coefficients();
   fit.square = std::max(gram(0, 0) - equations.explained(), 1e-12 * gram(0, 0));
-  const Eigen::Index last = columns.cols() - 2;
-  const double freedom = static_cast<double>(rows.size()) - static_cast<double>(columns.cols() - 1);
-  fit.last_variance = fit.square / std::max(1.0, freedom) * equations.inverse()(last, last);
   return fit;
 }
 

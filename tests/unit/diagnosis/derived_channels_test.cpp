@@ -168,13 +168,13 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   EXPECT_EQ(found.effects.size(), 3U);
 }
 
-// Two axes that cone, all references late by a tenth of a second: neither axis is given a part of the other.
+// Two axes that swing, all references late by a tenth of a second: neither axis is given a part of the other.
 TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
   constexpr std::size_t n = 20000;
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   const auto x = [](double t) { return 0.4 * std::sin(1.3 * t); };
-  const auto y = [](double t) { return 0.4 * std::cos(1.3 * t) + 0.2 * std::sin(0.31 * t); };
+  const auto y = [](double t) { return 0.4 * std::cos(1.1 * t) + 0.2 * std::sin(0.31 * t); };
   std::vector<double> time, x_rate, y_rate, x_late, y_late;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = 0.02 * static_cast<double>(i);
@@ -184,7 +184,7 @@ TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
     x_late.push_back(x(t - 0.1));
     y_late.push_back(y(t - 0.1));
   }
-  Record record = made_record("cone", time, x_rate, {}, x_late);
+  Record record = made_record("swing", time, x_rate, {}, x_late);
   record.other_axes = {{"rate_y_radps", y_rate}};
   record.other_references = {y_late};
   const Diagnosis found = diagnose({record}, {});
