@@ -2,7 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <list>
 #include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "filters/diagnosis/cleaning/steps.h"
@@ -10,62 +15,87 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kFewest = 20;  // changes
-// Of a reading that is held no change follows sooner than this share of the usual distance; of a coarse reading many do.
-constexpr double kSoon = 0.6, kSeldom = 0.05;
+constexpr std::size_t kFewestValues = 10;  // fewer are a switch's
+// Of a reading that is held no change follows sooner than this share of the usual distance; of a coarse one many do.
+constexpr double kSoonShare = 0.6, kSeldom = 0.05;
+// Longer is a rate table's level, or a set point's.
+constexpr double kLongestReference_s = 2.0, kLongestChannel_s = 60.0;
 
-// Samples from one reading to the next, if all are held for as long; nullopt if every sample is a reading, or a coarse
-// one stays the same by itself.
-std::optional<std::size_t> held_for(std::span<const double> values) {
+// Samples from one reading to the next, if all are held for as long and for at most `longest`; nullopt if every sample is
+// a reading, or a coarse one stays the same by itself.
+std::optional<std::size_t> held_for(std::span<const double> values, double longest) {
   std::vector<std::size_t> distances;
+  std::set<double> different;
   std::size_t last = 0;
-  double before = std::nan("");
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) return std::nullopt;
-    if (values[i] == before) continue;
-    if (i > 0) distances.push_back(i - last);
-    last = i;
-    before = values[i];
+    if (i > 0 && values[i] == values[i - 1]) continue;
+    if (i > 0) distances.push_back(i - std::exchange(last, i));
+    if (different.size() < kFewestValues) different.insert(values[i]);
   }
-  if (distances.size() < kFewest) return std::nullopt;
+  if (different.size() < kFewestValues) return std::nullopt;
   const auto middle = distances.begin() + std::ssize(distances) / 2;
   std::ranges::nth_element(distances, middle);
-  const std::size_t usual = *middle;
-  const auto soon = std::ranges::count_if(distances, [&](std::size_t each) {
-    return static_cast<double>(each) < kSoon * static_cast<double>(usual);
-  });
+  const auto usual = static_cast<double>(*middle);
+  const auto soon = std::ranges::count_if(
+      distances, [&](std::size_t each) { return static_cast<double>(each) < kSoonShare * usual; });
   const bool regular = static_cast<double>(soon) <= kSeldom * static_cast<double>(distances.size());
-  return usual > 1 && regular ? std::optional(usual) : std::nullopt;
+  return usual > 1.0 && usual <= longest && regular ? std::optional(*middle) : std::nullopt;
 }
 
-// The readings alone, NaN between them; of one that stays the same, every `each`-th sample.
-Samples readings_of(std::span<const double> values, std::size_t each) {
-  Samples out(values.size(), std::numeric_limits<double>::quiet_NaN());
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0 && values[i] == values[i - 1] && i - last < each) continue;
-    out[i] = values[i];
-    last = i;
-  }
-  return out;
+// Samples that are readings; of one that stays the same, every `each`-th.
+std::vector<std::size_t> readings_of(std::span<const double> values, std::size_t each) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (i == 0 || values[i] != values[i - 1] || i - places.back() >= each) places.push_back(i);
+  return places;
+}
+
+// The record's rows at these places.
+void keep_rows(Record& record, const std::vector<std::size_t>& places, std::list<Samples>& columns) {
+  const auto keep = [&](std::span<const double>& values) {
+    if (values.empty()) return;
+    Samples& kept = columns.emplace_back(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) kept[i] = values[places[i]];
+    values = kept;
+  };
+  keep(record.time_s);
+  keep(record.rate_radps);
+  keep(record.reference_radps);
+  for (RecordChannel& channel : record.channels) keep(channel.values);
+  for (RecordChannel& axis : record.other_axes) keep(axis.values);
+  for (std::span<const double>& reference : record.other_references) keep(reference);
+  const auto place = [&](std::size_t sample) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(places, sample) - places.begin());
+  };
+  for (Stretch& rest : record.at_rest) rest = {place(rest.begin), place(rest.end)};
+  std::erase_if(record.at_rest, [](const Stretch& rest) { return rest.size() == 0; });
 }
 
 }  // namespace
 
 OwnedRecords with_readings_alone(OwnedRecords given) {
   for (Record& record : given.records) {
-    const auto leave_out_held = [&](std::span<const double>& values, const std::string& name) {
-      const std::optional<std::size_t> each = held_for(values);
-      if (!each) return;
-      values = given.columns.emplace_back(readings_of(values, *each));
-      given.remarks.push_back(name + " is a new reading in every " + std::to_string(*each) +
-                              " samples and held between; the held ones are left out" +
-                              given.of_several(record));
+    const auto rows = static_cast<double>(record.time_s.size());
+    const double period_s = (record.time_s.back() - record.time_s.front()) / std::max(rows - 1.0, 1.0);
+    const auto tell = [&](const std::string& name, std::size_t each, const char* left_out) {
+      given.remarks.push_back(name + " is read in every " + std::to_string(each) +
+                              " samples and held between: " + left_out + given.of_several(record));
     };
-    leave_out_held(record.reference_radps, record.reference_name);
-    for (std::size_t a = 0; a < record.other_references.size(); ++a)
-      leave_out_held(record.other_references[a], "the reference of " + record.other_axes[a].name);
-    for (RecordChannel& channel : record.channels) leave_out_held(channel.values, channel.name);
+    if (const std::optional<std::size_t> each =
+            held_for(record.reference_radps, kLongestReference_s / period_s)) {
+      keep_rows(record, readings_of(record.reference_radps, *each), given.columns);
+      tell(record.reference_name, *each, "only the rows of its readings are used");
+    }
+    for (RecordChannel& channel : record.channels) {
+      const std::optional<std::size_t> each = held_for(channel.values, kLongestChannel_s / period_s);
+      if (!each) continue;
+      Samples& alone =
+          given.columns.emplace_back(channel.values.size(), std::numeric_limits<double>::quiet_NaN());
+      for (const std::size_t i : readings_of(channel.values, *each)) alone[i] = channel.values[i];
+      channel.values = alone;
+      tell(channel.name, *each, "what is held is left out");
+    }
   }
   return given;
 }
