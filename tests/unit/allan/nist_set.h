@@ -2,8 +2,7 @@
 // The test set whose deviations are published.
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include "tests/unit/test.h"
 
 namespace ifog {
 

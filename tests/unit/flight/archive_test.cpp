@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that begin, end and go; a disk that is full, damaged, or shared with others.
-#include <gtest/gtest.h>
-
 #include <unistd.h>
 
-#include <filesystem>
-
 #include "tests/unit/flight/recordings.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -163,7 +159,7 @@ TEST(FlightArchive, RunsThatOverlapAreTold) {
   const ReadBack read = read_back(all_of(disk));
   EXPECT_EQ(read.counts.early_files, 1U);
   ASSERT_EQ(losses(read.counts).size(), 2U);  // and that they are three
-  EXPECT_NE(losses(read.counts)[1].find("two recorders wrote at once"), std::string::npos);
+  EXPECT_TRUE(test::has(losses(read.counts)[1], "two recorders wrote at once"));
 }
 
 TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {
@@ -177,24 +173,6 @@ TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {
   EXPECT_EQ(losses(read_back(all_of(disk)).counts),
             std::vector<std::string>{"88 messages are not in the recording: lost on LCM on the way to it, or "
                                      "the disk was slow or full"});
-}
-
-TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {
-  Bench bench({});
-  bench.disk.cuts_back = false;
-  for (std::uint64_t n = 0; n < 100; ++n) {
-    bench.now_ns += kSecond;
-    if (n == 50) bench.disk.room = bench.disk.used() + 40;
-    if (n == 80) bench.disk.room = UINT64_MAX;
-    bench.add(n);
-    bench.turn();
-  }
-  bench.archive.close(bench.now_ns, kWall);
-  const ReadBack read = read_back(all_of(bench.disk));
-  EXPECT_EQ(numbers(read), counting(0, 100));
-  EXPECT_EQ(read.counts.torn_bytes, 40U);
-  EXPECT_EQ(read.counts.open_files, 1U);
-  EXPECT_EQ(bench.disk.files.size(), 2U);
 }
 
 // The wall clock of a computer without a battery: 1970 at the start, right later. It removes nothing.

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/series/median_step.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <random>
-#include <vector>
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,25 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/series/samples.h"
-
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <numeric>
-#include <span>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "tests/unit/refusal.h"
+#include "filters/series/samples.h"
+#include "tests/unit/test.h"
 
 namespace {
 
