@@ -46,6 +46,34 @@ TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
   }
 }
 
+TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
+  for (const std::uint32_t modulus : {0U, 16U}) {
+    ifog_description d{};
+    d.axes = 1;
+    d.nominal_rate_hz = 5000.0;
+    d.has_device_time = 1;
+    d.sequence_modulus = modulus;
+    test::Built builder(d);
+    for (int n = 0; n < 20'000; ++n) {
+      ifog_sample sample{};
+      sample.flags = IFOG_SAMPLE_DEVICE_TIME;
+      if (modulus != 0) sample.flags |= IFOG_SAMPLE_SEQUENCE;
+      sample.sequence = modulus != 0 ? static_cast<std::uint32_t>(n) % modulus : 0;
+      sample.device_time_ns = static_cast<std::int64_t>(n / 5) * 1'000'000;
+      sample.arrival_ns = kStart_ns + std::int64_t{n} * 200'000;
+      sample.valid_axes = 1;
+      sample.value[0] = 1e-3 * (n % 7);
+      builder.add(sample);
+    }
+    EXPECT_EQ(builder.counts().missing, 0U) << modulus;
+    EXPECT_EQ(builder.counts().repeated, 0U) << modulus;
+    const Capture made = builder.finish();
+    ASSERT_EQ(made.size(), 20'000U) << modulus;
+    for (std::size_t i = 1; i < made.size(); ++i) ASSERT_GT(made.time_s[i], made.time_s[i - 1]) << i;
+    EXPECT_NEAR(made.time_s.back() - made.time_s.front(), 19'999 * 2e-4, 2e-3) << modulus;
+  }
+}
+
 ifog_description description(double rate_hz, std::uint32_t modulus = 0) {
   ifog_description out{};
   out.axes = 1;

@@ -180,6 +180,26 @@ TEST(Stim300, EncodesEveryDatagramThereIs) {
   }
 }
 
+// No device sends this; but what a line gave byte by byte its recording gives again, read at once.
+TEST(Stim300, ADatagramInsideAnotherIsTheSameHoweverItComes) {
+  Bytes outer{0xA7};
+  const Bytes inner = hex_bytes(k90);
+  outer.insert(outer.end(), 5, std::uint8_t{0});
+  outer.insert(outer.end(), inner.begin(), inner.end());
+  outer.resize(55);
+  append_crc(outer);
+  DriverInstance whole = make_driver("stim300", {}), bytewise = make_driver("stim300", {});
+  const std::vector<ifog_sample> at_once = decoded(whole, outer);
+  std::vector<ifog_sample> one_by_one;
+  for (const std::uint8_t byte : outer)
+    for (const ifog_sample& sample : decoded(bytewise, {&byte, 1})) one_by_one.push_back(sample);
+  ASSERT_EQ(at_once.size(), 1U);
+  ASSERT_EQ(one_by_one.size(), 1U);
+  EXPECT_DOUBLE_EQ(at_once[0].value[0], one_by_one[0].value[0]);
+  EXPECT_EQ(whole.counters().bytes_skipped, bytewise.counters().bytes_skipped);
+  EXPECT_EQ(whole.counters().bytes_framed, inner.size());
+}
+
 TEST(Stim300, EveryIntactDatagramComesOutOfADamagedStream) {
   for (const bool terminated : {false, true}) {
     Random random(9);

@@ -74,6 +74,11 @@ class LoopbackSocket {
 
 // Of IPv4 and of IPv6, where the loopback has that.
 class BothFamilies : public testing::TestWithParam<int> {
+ public:
+  static std::string name(const testing::TestParamInfo<int>& family) {
+    return family.param == AF_INET ? "IPv4" : "IPv6";
+  }
+
  protected:
   void SetUp() override {
     LoopbackSocket probe(GetParam(), SOCK_DGRAM);
@@ -81,9 +86,6 @@ class BothFamilies : public testing::TestWithParam<int> {
       GTEST_SKIP() << "the loopback has no IPv6 here; sysctl net.ipv6.conf.lo.disable_ipv6=0 gives it one";
   }
   static const char* address() { return GetParam() == AF_INET ? "127.0.0.1" : "::1"; }
-  static std::string name(const testing::TestParamInfo<int>& family) {
-    return family.param == AF_INET ? "IPv4" : "IPv6";
-  }
 };
 
 // A port that was free a moment ago.
