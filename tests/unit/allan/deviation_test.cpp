@@ -4,13 +4,23 @@
 #include "filters/allan/row_times.h"
 #include "filters/allan/streaming.h"
 #include "filters/allan/theo1.h"
-#include "tests/unit/allan/nist_set.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace ifog {
 namespace {
+
+// NIST SP 1065, section 12.4: 1000 frequency values by a linear congruence.
+std::vector<double> nist_set() {
+  std::vector<double> y;
+  std::uint64_t n = 1234567890;
+  for (int i = 0; i < 1000; ++i) {
+    y.push_back(static_cast<double>(n) / 2147483647.0);
+    n = 16807 * n % 2147483647;
+  }
+  return y;
+}
 
 std::vector<double> allan(const std::vector<double>& rate, const std::vector<std::size_t>& m,
                           Deviation kind = Deviation::kAllan) {

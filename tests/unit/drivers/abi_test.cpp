@@ -86,7 +86,8 @@ constexpr Place kVersionSix[] = {
     FIELD(ifog_driver, reset, 80),
     FIELD(ifog_driver, counters, 88),
     FIELD(ifog_driver, encode_bytes, 96),
-    FIELD(ifog_driver, encode_can, 104)};
+    FIELD(ifog_driver, encode_can, 104),
+};
 
 #undef FIELD
 
