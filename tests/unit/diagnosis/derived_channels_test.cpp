@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/channels/derived_channels.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/form.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -133,8 +126,7 @@ TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
 // square of the angles.
 TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   constexpr std::size_t n = 20000;
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
+  test::Noise normal(1);
   std::vector<double> time;
   std::array<std::vector<double>, 3> truth, measured;
   const double seen[3][3] = {{1e-4, 2e-3, 1.8e-3}, {-1.4e-3, 0.0, -1.9e-3}, {1.2e-3, 1.9e-3, -2e-4}};
@@ -143,7 +135,7 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
     for (std::size_t a = 0; a < 3; ++a)
       truth[a].push_back(0.5 * std::sin(time.back() * (0.3 + 0.17 * static_cast<double>(a))));
     for (std::size_t a = 0; a < 3; ++a) {
-      double rate = truth[a][i] + 1e-6 * normal(random);
+      double rate = truth[a][i] + 1e-6 * normal();
       for (std::size_t b = 0; b < 3; ++b) rate += seen[a][b] * truth[b][i];
       measured[a].push_back(rate);
     }
@@ -171,16 +163,15 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
 // Two axes that swing, all references late by a tenth of a second: neither axis is given a part of the other.
 TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
   constexpr std::size_t n = 20000;
-  std::mt19937_64 random(2);
-  std::normal_distribution<double> normal;
+  test::Noise normal(2);
   const auto x = [](double t) { return 0.4 * std::sin(1.3 * t); };
   const auto y = [](double t) { return 0.4 * std::cos(1.1 * t) + 0.2 * std::sin(0.31 * t); };
   std::vector<double> time, x_rate, y_rate, x_late, y_late;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = 0.02 * static_cast<double>(i);
     time.push_back(t);
-    x_rate.push_back(x(t) * (1.0 + 1e-4) + 2e-3 * y(t) + 1e-6 * normal(random));
-    y_rate.push_back(y(t) + 1e-6 * normal(random));
+    x_rate.push_back(x(t) * (1.0 + 1e-4) + 2e-3 * y(t) + 1e-6 * normal());
+    y_rate.push_back(y(t) + 1e-6 * normal());
     x_late.push_back(x(t - 0.1));
     y_late.push_back(y(t - 0.1));
   }
@@ -209,17 +200,16 @@ struct Chamber {
   std::vector<double> time, rate, temperature, supply;
 
   explicit Chamber(std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     double walk = 0.0;
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double t = static_cast<double>(i);
       time.push_back(t);
       temperature.push_back(20.0 + 8.5 * std::sin(2.0 * M_PI * t / 3100.0) +
-                            1.5 * std::sin(2.0 * M_PI * t / 410.0) + 0.02 * normal(random));
-      supply.push_back(12.0 + 0.05 * std::sin(2.0 * M_PI * t / 700.0) + 0.002 * normal(random));
-      walk += 2e-9 * normal(random);
-      rate.push_back(1e-6 * normal(random) + walk);
+                            1.5 * std::sin(2.0 * M_PI * t / 410.0) + 0.02 * normal());
+      supply.push_back(12.0 + 0.05 * std::sin(2.0 * M_PI * t / 700.0) + 0.002 * normal());
+      walk += 2e-9 * normal();
+      rate.push_back(1e-6 * normal() + walk);
     }
   }
   [[nodiscard]] Diagnosis diagnosed() const {
@@ -250,7 +240,7 @@ TEST(Fringes, AreToldWithTheirPeriodAndPhase) {
       most = std::max(most, told);
     }
     EXPECT_LT(most - least, 0.25 * 4e-7) << period;
-    EXPECT_NE(found.effects[0].effect.meaning.find("fringe"), std::string::npos);
+    EXPECT_TRUE(test::has(found.effects[0].effect.meaning, "fringe"));
   }
 }
 

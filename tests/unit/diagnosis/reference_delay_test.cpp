@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The delay of a reference that was logged late is estimated to a part of a sample and corrected.
 #include "filters/diagnosis/cleaning/reference_delay.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-#include <utility>
-
 #include "filters/diagnosis/cleaning/cross_delay.h"
 #include "filters/diagnosis/diagnose.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -40,15 +32,13 @@ struct Logged {
   // The reference of a time is the true rate delay_s before it.
   Logged(std::uint64_t seed, double delay_s, const std::function<double(double)>& truth = turning,
          double scale_factor = 0.0) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double t = kStep_s * static_cast<double>(i);
       time.push_back(t);
       temperature.push_back(25.0 + 8.0 * std::sin(t / 90.0));
-      rate.push_back(truth(t) * (1.0 + scale_factor * (temperature.back() - 25.0)) + 2e-3 +
-                     1e-3 * normal(random));
-      reference.push_back(truth(t - delay_s) + 1e-4 * normal(random));
+      rate.push_back(truth(t) * (1.0 + scale_factor * (temperature.back() - 25.0)) + 2e-3 + 1e-3 * normal());
+      reference.push_back(truth(t - delay_s) + 1e-4 * normal());
     }
     record.name = "logged";
     record.time_s = time;
@@ -87,11 +77,10 @@ TEST(ReferenceDelay, IsFoundWithAReferenceDifferentiatedFromNoisyAngles) {
   const auto quick = [](double t) { return turning(t) + 0.3 * std::sin(9.1 * t) * std::sin(0.9 * t); };
   for (const double delay_s : {0.62, -0.43, 0.0}) {
     Logged logged(8, delay_s, quick);
-    std::mt19937_64 random(9);
-    std::normal_distribution<double> normal;
+    test::Noise normal(9);
     double before = 0.0;
     for (double& each : logged.reference) {
-      const double angle = 2e-3 * normal(random);
+      const double angle = 2e-3 * normal();
       each += (angle - std::exchange(before, angle)) / kStep_s;
     }
     const OwnedRecords aligned = align_references(std::vector{logged.record});

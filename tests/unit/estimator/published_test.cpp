@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is published of a model with a colour or a line: the level alone. The rest of the model is the noise
 // it was tuned on.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <numbers>
 
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -95,12 +93,11 @@ TEST(Published, VarianceIsTheLevels) {
   settings.state = "random-walk + ar(1)";
   settings.state_parameters = {kPhi, kShock / kWalkStep};
   Fed filter(settings);
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  Noise normal(3);
   double colour = 0.0;
   for (int i = 0; i < 20'000; ++i) {
-    filter.step({normal(random) + colour});
-    colour = kPhi * colour + std::sqrt(kShock) * normal(random);
+    filter.step({normal() + colour});
+    colour = kPhi * colour + std::sqrt(kShock) * normal();
   }
   const double ideal =
       level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(), Eigen::Vector2d(kWalkStep, kShock).asDiagonal(),

@@ -1,22 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The smoother against the measurements and the causal filter in motions of many kinds.
 #include "filters/smoother/smoother.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <random>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "tests/unit/estimator/drive.h"
-#include "tests/unit/sanitized.h"
+#include "tests/unit/test.h"
 
 namespace {
 
