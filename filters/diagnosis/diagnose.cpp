@@ -8,7 +8,6 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
@@ -20,7 +19,6 @@
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/report/series.h"
 #include "filters/diagnosis/report/written_model.h"
-#include "filters/diagnosis/residual/dead_zone.h"
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/periodogram.h"
@@ -50,7 +48,6 @@ class Run {
   Diagnosis run() {
     refuse_constant(records_);
     look_at_channels();
-    separate_dead_zone();
     search();
     separate_lines();
     separate_hysteresis();
@@ -122,16 +119,6 @@ class Run {
     const Columns columns = design(reconstructed_, candidates_of(found_.chosen));
     found_.noise = fit_noise(reconstructed_.grid, columns, found_.noise.shape);
     fit_coefficients(reconstructed_, found_);
-  }
-
-  // Before the search, which would explain part of it by a nonlinearity.
-  void separate_dead_zone() {
-    if (data_.reference < 0 || data_.grid.dwells || data_.grid.noisy_reference) return;
-    const std::string& channel = data_.channels[static_cast<std::size_t>(data_.reference)].name;
-    if (auto zone = take_out_dead_zone(records_, channel, options_.significance, data_.grid, errors_)) {
-      of_samples_.push_back(std::move(*zone));
-      reconstructed_.grid.error = data_.grid.error;
-    }
   }
 
   // Looks for lines in the residual of the effects, then repeats the search without them.
@@ -219,9 +206,6 @@ class Run {
   }
 
   void report_rest() {
-    result_.channel_delays =
-        delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
-    for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained = describe_rest(records_, errors_, of_samples_, found_.noise, data_.grid,
                                         options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
@@ -251,7 +235,7 @@ class Run {
   BlockData data_;           // without ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
-  std::vector<FoundEffect> of_samples_;  // ramps, dead zone, lines: found outside the joint fit
+  std::vector<FoundEffect> of_samples_;  // ramps and lines: found outside the joint fit
   SearchResult found_;
   bool searched_ = false;
   JointFit joint_;

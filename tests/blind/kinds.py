@@ -3,7 +3,7 @@
 shape: the effect's rate in a capture for a size of one. `cover` says who could describe it:
   design   the forms that section "Effects" of the design names, on one channel or a product of two
   grammar  needs a difference of like channels, another axis' rate, |reference|, a switch, a delay, two band edges,
-           a dead zone, or a channel rebuilt from the angle
+           or a channel rebuilt from the angle
   none     no form can: it must be left alone, and reported as unexplained
 `channels`: any one of each group must be named; a form without a channel has the group ()."""
 from dataclasses import dataclass, field

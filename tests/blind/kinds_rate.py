@@ -33,7 +33,7 @@ def _(w, c):
     return np.abs(w.rate)
 
 
-@kind("dead zone", "dead zone", "grammar", TABLE, ("temperature",), (RATE,), linear=False)
+@kind("dead zone", "none", "none", TABLE, ("temperature",), (RATE,), linear=False)
 def _(w, c):
     return np.where(np.abs(w.rate) < c["size"], -w.rate, 0.0)
 

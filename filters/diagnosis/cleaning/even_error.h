@@ -19,7 +19,7 @@ struct EvenError {
   RecordOrigin origin{};  // of start_s
   double start_s = 0.0;
   SharedSamples before;    // rate - reference
-  SharedSamples rest;      // minus lines and dead zone, which are not corrected
+  SharedSamples rest;      // minus lines, which are not corrected
   SharedSamples after;     // `rest` minus the effects
   SharedSamples written;   // residual of `before` after the daemon's correction with the written model
   SharedSamples held_out;  // the same with coefficients fitted without the sample's own part
