@@ -8,7 +8,6 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
@@ -227,9 +226,6 @@ class Run {
   }
 
   void report_rest() {
-    result_.channel_delays =
-        delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
-    for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained = describe_rest(records_, errors_, of_samples_, found_.noise, data_.grid,
                                         options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));

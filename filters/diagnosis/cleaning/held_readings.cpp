@@ -16,31 +16,35 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kFewestValues = 10;  // fewer are a switch's
-// Of a reading that is held no change follows sooner than this share of the usual distance; of a coarse one many do.
-constexpr double kSoonShare = 0.6, kSeldom = 0.05;
+// Changes between readings are whole numbers of holds apart, to a sample; those of a coarse reading are not.
+constexpr double kOffWhole = 0.24, kSeldom = 0.05;
 // Longer is a rate table's level, or a set point's.
 constexpr double kLongestReference_s = 2.0, kLongestChannel_s = 60.0;
 
 // Samples from one reading to the next, if all are held for as long and for at most `longest`; nullopt if every sample is
 // a reading, or a coarse one stays the same by itself.
 std::optional<std::size_t> held_for(std::span<const double> values, double longest) {
-  std::vector<std::size_t> distances;
+  std::vector<double> distances;
   std::set<double> different;
   std::size_t last = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) return std::nullopt;
     if (i > 0 && values[i] == values[i - 1]) continue;
-    if (i > 0) distances.push_back(i - std::exchange(last, i));
+    if (i > 0) distances.push_back(static_cast<double>(i - std::exchange(last, i)));
     if (different.size() < kFewestValues) different.insert(values[i]);
   }
   if (different.size() < kFewestValues) return std::nullopt;
-  const auto middle = distances.begin() + std::ssize(distances) / 2;
-  std::ranges::nth_element(distances, middle);
-  const auto usual = static_cast<double>(*middle);
-  const auto soon = std::ranges::count_if(
-      distances, [&](std::size_t each) { return static_cast<double>(each) < kSoonShare * usual; });
-  const bool regular = static_cast<double>(soon) <= kSeldom * static_cast<double>(distances.size());
-  return usual > 1.0 && usual <= longest && regular ? std::optional(*middle) : std::nullopt;
+  const auto seldom = static_cast<std::ptrdiff_t>(kSeldom * static_cast<double>(distances.size()));
+  std::ranges::nth_element(distances, distances.begin() + seldom);
+  const double least = distances[static_cast<std::size_t>(seldom)];
+  if (least < 2.0) return std::nullopt;
+  double samples = 0.0, holds = 0.0;
+  for (const double each : distances) samples += each, holds += std::round(each / least);
+  const double hold = samples / std::max(holds, 1.0), most = std::min(1.0, kOffWhole * hold);
+  const auto off = std::ranges::count_if(
+      distances, [&](double each) { return std::abs(each - hold * std::round(each / hold)) > most; });
+  return off <= seldom && hold <= longest ? std::optional(static_cast<std::size_t>(std::lround(hold)))
+                                          : std::nullopt;
 }
 
 // Samples that are readings; of one that stays the same, every `each`-th.

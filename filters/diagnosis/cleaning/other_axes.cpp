@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "filters/diagnosis/cleaning/series_fit.h"
+#include "filters/linear/columns.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -20,9 +21,16 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
   Columns columns = Columns::Ones(vector(measured).size(), 2 + axes);
   columns.col(0) = vector(measured) - vector(reference);
   for (Eigen::Index a = 0; a < axes; ++a) columns.col(2 + a) = vector(along[static_cast<std::size_t>(a)]);
-  const std::vector<Eigen::Index> rows = complete_rows(columns);
-  if (rows.size() < 10 * static_cast<std::size_t>(columns.cols())) return Samples(measured);
-  const Eigen::VectorXd shares = least_squares(columns, rows).coefficients.tail(axes);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  Eigen::Index complete = 0;
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+    if (!columns.row(i).allFinite()) continue;
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.row(i).transpose());
+    ++complete;
+  }
+  if (complete < 10 * columns.cols()) return Samples(measured);
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  const Eigen::VectorXd shares = NormalEquations::of_measured_first(gram).coefficients().tail(axes);
   const Eigen::VectorXd corrected = vector(measured) - columns.rightCols(axes) * shares;
   return Samples(std::span<const double>(corrected.data(), measured.size()));
 }
