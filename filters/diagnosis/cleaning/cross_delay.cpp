@@ -278,15 +278,15 @@ class DelaySearch {
 
 }  // namespace
 
-Samples shifted(std::span<const double> values, double steps) {
-  const double whole = std::floor(steps), fraction = steps - whole;
-  const std::array<double, 4> weights = cubic(fraction);
+Samples shifted(std::span<const double> values, double steps, double growth) {
   const auto at = [&](std::ptrdiff_t i) {
     return i >= 0 && i < std::ssize(values) ? values[static_cast<std::size_t>(i)]
                                             : std::numeric_limits<double>::quiet_NaN();
   };
   Samples out(values.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
+    const double by = steps + growth * static_cast<double>(i), whole = std::floor(by), fraction = by - whole;
+    const std::array<double, 4> weights = cubic(fraction);
     const std::ptrdiff_t here = static_cast<std::ptrdiff_t>(i) + static_cast<std::ptrdiff_t>(whole);
     const double before = at(here), after = fraction > 0.0 ? at(here + 1) : before;
     out[i] = weights[0] * at(here - 1) + weights[1] * before + weights[2] * after + weights[3] * at(here + 2);

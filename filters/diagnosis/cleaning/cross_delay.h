@@ -26,8 +26,8 @@ struct CrossDelay {
 // coherent within ±longest samples, or there are fewer than 200.
 [[nodiscard]] std::optional<CrossDelay> cross_delay(std::span<const SameMotion> axes, std::size_t longest);
 
-// values at k + steps: cubic interpolation, linear next to gaps; NaN where nothing can be interpolated. A jump
-// disturbs the two samples on either side, not more.
-[[nodiscard]] Samples shifted(std::span<const double> values, double steps);
+// values at k + steps + growth k: cubic interpolation, linear next to gaps; NaN where nothing can be interpolated. A
+// jump disturbs the two samples on either side, not more.
+[[nodiscard]] Samples shifted(std::span<const double> values, double steps, double growth = 0.0);
 
 }  // namespace ifog

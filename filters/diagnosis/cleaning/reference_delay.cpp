@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <list>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/record/fitted_part.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -46,9 +48,16 @@ std::optional<ReferenceDelay> delay_of(const Record& record, double period_s) {
   return ReferenceDelay{record.name, found->steps * step_s, found->error * step_s};
 }
 
+// Delay of a reference at the record's start, and by how much it grows: the clocks of two loggers run apart.
+struct LateBy {
+  double start_s = 0.0, growth = 0.0;
+};
+
 // A reference without delay, by row of the record.
-Samples moved(const Record& record, double period_s, double delay_s, std::span<const double> reference) {
-  const Samples even = shifted(on_even_grid(record, period_s, reference), delay_s / period_s);
+Samples moved(const Record& record, double period_s, const LateBy& late_by,
+              std::span<const double> reference) {
+  const Samples even =
+      shifted(on_even_grid(record, period_s, reference), late_by.start_s / period_s, late_by.growth);
   Samples out(record.time_s.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto k =
@@ -58,8 +67,45 @@ Samples moved(const Record& record, double period_s, double delay_s, std::span<c
   return out;
 }
 
-std::string in_words(const ReferenceDelay& delay, const std::string& name) {
+// The record with its references moved; columns: their storage.
+Record aligned(Record record, double period_s, const LateBy& late_by, std::list<Samples>& columns) {
+  const auto move = [&](std::span<const double>& reference) {
+    if (!reference.empty()) reference = columns.emplace_back(moved(record, period_s, late_by, reference));
+  };
+  move(record.reference_radps);
+  for (std::span<const double>& other : record.other_references) move(other);
+  return record;
+}
+
+// Follows a delay that differs between the halves of the record by more than a sample.
+LateBy with_growth(const Record& record, double period_s, LateBy late_by) {
+  constexpr int kRounds = 4;
+  const double half_s = 0.5 * (record.time_s.back() - record.time_s.front());
+  for (int round = 0; round < kRounds; ++round) {
+    std::list<Samples> columns;
+    const Record now = aligned(record, period_s, late_by, columns);
+    const auto delay_in = [&](double from, double to) {
+      const auto found = delay_of(part_of(now, samples_in(now, {from, to})), period_s);
+      return found ? *found : ReferenceDelay{};
+    };
+    const ReferenceDelay first = delay_in(0.0, 0.5), second = delay_in(0.5, 1.0);
+    const double more_s = second.delay_s - first.delay_s;
+    if (std::abs(more_s) < std::max(period_s, kCertain * std::hypot(first.std_error_s, second.std_error_s)))
+      break;
+    // The halves' delays are those of their middles.
+    late_by.growth += more_s / half_s;
+    late_by.start_s += first.delay_s - 0.5 * more_s;
+  }
+  return late_by;
+}
+
+std::string in_words(const ReferenceDelay& delay, const LateBy& late_by, const std::string& name) {
   const double late = delay.delay_s;
+  if (late_by.growth != 0.0)
+    return name + formatted(
+                      " logged %.4g s late at first, and by %.3g ppm more as time passes: the clocks of two "
+                      "loggers run apart; shifted",
+                      late_by.start_s, 1e6 * late_by.growth);
   return name + formatted(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
                           late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
 }
@@ -72,16 +118,13 @@ OwnedRecords align_references(OwnedRecords given) {
     try {
       const double period_s = sample_clock(record.time_s).period_s;
       if (period_s > kSlowest_s) continue;
-      std::optional<ReferenceDelay> delay = delay_of(record, period_s);
-      if (!delay) continue;
-      const auto move = [&](std::span<const double>& reference) {
-        reference = given.columns.emplace_back(moved(record, period_s, delay->delay_s, reference));
-      };
-      move(record.reference_radps);
-      for (std::span<const double>& other : record.other_references)
-        if (!other.empty()) move(other);
-      given.remarks.push_back(in_words(*delay, record.reference_name + given.of_several(record)));
-      given.delays.push_back(*std::move(delay));
+      const std::optional<ReferenceDelay> found = delay_of(record, period_s);
+      const ReferenceDelay delay = found.value_or(ReferenceDelay{record.name, 0.0, 0.0});
+      const LateBy late_by = with_growth(record, period_s, {delay.delay_s});
+      if (!found && late_by.growth == 0.0) continue;
+      record = aligned(record, period_s, late_by, given.columns);
+      given.remarks.push_back(in_words(delay, late_by, record.reference_name + given.of_several(record)));
+      given.delays.push_back(delay);
     } catch (const std::invalid_argument&) {
       continue;  // no even clock, or too few samples
     }

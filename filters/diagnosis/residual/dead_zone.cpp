@@ -18,8 +18,8 @@ constexpr double kWidestZone = 0.5;    // of the largest rate
 constexpr double kLeastWidth = 1e-3;   // of the largest rate
 constexpr double kFactor = 1.15;       // ratio between widths that are independent tries
 constexpr double kShare = 0.1;         // of the significance, as one of many tests
-constexpr double kWithoutOne = 12.0;   // required gain of twice the log-likelihood without the best crossing
 constexpr double kNearlyWhole = 0.1;   // tolerance of a coefficient of -1, besides three standard errors
+constexpr double kWithoutOne = 12.0;   // required gain of twice the log-likelihood without the best crossing
 constexpr std::size_t kMostTurns = 1;  // in one crossing, from one side of the zone to the other
 constexpr double kFar = 1.0 / 3.0;     // of the half width: samples that are on one side
 constexpr std::size_t kWindow = 64;    // samples of the running mean that removes slow error
@@ -48,12 +48,11 @@ struct Turns {
   Samples rate, error;  // the error relative to those around it
 };
 
-// The rate where the sensor does not sense it. At rest the error is minus the reference's noise, as in a dead zone, so
-// rates within that noise are excluded.
-Samples hidden_rate(const Samples& rate, double least, double half_width) {
+// The rate where it is between these sizes, else 0.
+Samples rate_between(const Samples& rate, double least, double most) {
   Samples hidden(rate);
   for (double& each : hidden)
-    if (const double size = std::abs(each); size <= least || size >= half_width) each = 0.0;
+    if (const double size = std::abs(each); size <= least || size >= most) each = 0.0;
   return hidden;
 }
 
@@ -68,12 +67,22 @@ struct Explained {
     square += hidden * hidden;
     product += hidden * error;
   }
+  void add(const Explained& other, double times = 1.0) {
+    gain += times * other.gain;
+    square += times * other.square;
+    product += times * other.product;
+  }
+  // True if none of the rate is sensed, within three standard errors.
+  [[nodiscard]] bool nearly_whole(double white_variance) const {
+    return square > 0.0 &&
+           std::abs(product / square + 1.0) <= kNearlyWhole + 3.0 * std::sqrt(white_variance / square);
+  }
 };
 
 Explained explained_by(const std::vector<Turns>& records, double least, double half_width) {
   Explained sums;
   for (const Turns& record : records) {
-    const Samples hidden = relative_to_mean(hidden_rate(record.rate, least, half_width));
+    const Samples hidden = relative_to_mean(rate_between(record.rate, least, half_width));
     for (std::size_t i = 0; i < hidden.size(); ++i) sums.add(hidden[i], record.error[i]);
   }
   return sums;
@@ -90,12 +99,12 @@ double noise_of(const std::vector<Turns>& records, double widest) {
   return bends.empty() ? 0.0 : median(std::move(bends)) / (0.6745 * std::sqrt(6.0));
 }
 
-// Gain of the crossings without the one that gains most. A turn crosses the zone once; at rest the reference's jitter
-// changes its sign time and again, and its error is minus the jitter, as in a dead zone.
-double without_best_crossing(const std::vector<Turns>& records, double least, double half_width) {
-  double all = 0.0, most = 0.0;
+// The same of the crossings alone, without the one that gains most. A turn crosses the zone once; at rest the reference's
+// jitter changes its sign time and again, and its error is minus the jitter, as in a dead zone.
+Explained explained_by_crossings(const std::vector<Turns>& records, double least, double half_width) {
+  Explained all, best;
   for (const Turns& record : records) {
-    const Samples hidden = relative_to_mean(hidden_rate(record.rate, least, half_width));
+    const Samples hidden = relative_to_mean(rate_between(record.rate, least, half_width));
     for (std::size_t i = 0, end = 0; i < hidden.size(); i = end + 1) {
       Explained crossing;
       double side = 0.0;
@@ -108,11 +117,12 @@ double without_best_crossing(const std::vector<Turns>& records, double least, do
         side = rate;
       }
       if (turns > kMostTurns) continue;
-      all += crossing.gain;
-      most = std::max(most, crossing.gain);
+      all.add(crossing);
+      if (crossing.gain > best.gain) best = crossing;
     }
   }
-  return all - most;
+  all.add(best, -1.0);
+  return all;
 }
 
 struct DeadZone {
@@ -161,6 +171,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
     }
     records.push_back({std::move(rate), relative_to_mean(error)});
   }
+  // At rest the error is minus the reference's noise, as in a dead zone.
   constexpr double kOwnNoise = 5.0;  // standard deviations
   const double widest = kWidestZone * most, least = kOwnNoise * noise_of(records, widest);
   const double narrowest = std::max(least, kLeastWidth * most);
@@ -180,8 +191,9 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const Explained inside = explained_by(records, least, zone.half_width);
   zone.coefficient = inside.product / inside.square;
   zone.coefficient_error = std::sqrt(white_variance / inside.square);
-  if (std::abs(zone.coefficient + 1.0) > kNearlyWhole + 3.0 * zone.coefficient_error) return std::nullopt;
-  if (without_best_crossing(records, least, zone.half_width) < kWithoutOne * white_variance)
+  const Explained crossings = explained_by_crossings(records, least, zone.half_width);
+  if (!inside.nearly_whole(white_variance) || !crossings.nearly_whole(white_variance) ||
+      crossings.gain < kWithoutOne * white_variance)
     return std::nullopt;
   return zone;
 }

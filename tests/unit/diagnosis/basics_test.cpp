@@ -24,6 +24,56 @@ struct Rows {
   }
 };
 
+// A GNSS receiver or an odometer is read once a second and held until then: between its readings the reference is not of
+// its time. The error bar holds: three of them.
+TEST(Basics, AReferenceThatIsHeldIsUsedAtItsReadings) {
+  constexpr double kScale = 3e-3;
+  test::Noise normal(21);
+  Rows rows;
+  double slow = 0.0, truth = 0.0;
+  for (int i = 0; i < 60'000; ++i) {
+    slow += 0.02 * (2.0 * normal() - slow);
+    truth += 0.02 * (slow - truth);
+    rows.time.push_back(0.1 * i);
+    rows.reference.push_back(i % 10 == 0 ? truth : rows.reference.back());
+    rows.rate.push_back((1.0 + kScale) * truth + 7e-4 * normal());
+  }
+  const Diagnosis found = diagnose({rows.record()}, {});
+  const Effect* scale = effect_of(found, "linear");
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(parameter(*scale, "coefficient"), kScale, 3.0 * scale->parameters[0].std_error);
+  EXPECT_LT(scale->parameters[0].std_error, 0.1 * kScale);
+  EXPECT_EQ(found.effects.size(), 1U);
+  EXPECT_TRUE(std::ranges::any_of(found.remarks, [](const std::string& said) {
+    return test::has(said, "is read in every 10 samples and held");
+  }));
+}
+
+// A thermometer that is logged every ten seconds in tenths of a degree, next to an effect of the temperature and of its
+// rate (Shupe): the stairs are no jumps of the bias. One in whole degrees that changes when it does is not held.
+TEST(Basics, StairsOfAThermometerAreNoEffects) {
+  for (const double digit : {0.1, 1.0}) {
+    test::Noise normal(22);
+    Rows rows;
+    double oven = 25.0, housing = 25.0, before = 25.0;
+    for (int i = 0; i < 60'000; ++i) {
+      if (i % 8'000 == 0) oven = 15.0 + 30.0 * std::abs(std::sin(1.7 * i));
+      housing += 1e-3 * (oven - housing);
+      const double rate = (housing - std::exchange(before, housing)) / 0.1;
+      rows.time.push_back(0.1 * i);
+      const bool read = digit == 1.0 || i % 100 == 0;
+      rows.channel.push_back(read ? digit * std::round(housing / digit) : rows.channel.back());
+      rows.rate.push_back(1e-4 * (housing - 25.0) + 2e-2 * rate + 3e-4 * normal());
+    }
+    const Diagnosis found = diagnose({rows.record()}, {});
+    EXPECT_EQ(effect_of(found, "step"), nullptr) << digit;
+    EXPECT_LT(found.after.at("rms_10s_radps"), 0.1 * found.before.at("rms_10s_radps")) << digit;
+    EXPECT_EQ(std::ranges::any_of(found.remarks,
+                                  [](const std::string& said) { return test::has(said, "and held"); }),
+              digit == 0.1);
+  }
+}
+
 // Motion up to some hertz and a reference differentiated from noisy angles. Least squares of means of a second is
 // the oracle.
 TEST(Basics, AreFoundInBroadbandMotion) {

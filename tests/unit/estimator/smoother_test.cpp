@@ -151,6 +151,31 @@ TEST(Smoother, EachAxisIsItsOwn) {
   }
 }
 
+// A MEMS gyro with an output filter: all its noise is the model's colour, as tune finds, and R is at the bound of the fit
+// (ADIS16405 at 100 Hz). At rest and in a vehicle.
+TEST(Smoother, AModelsColourIsNoise) {
+  constexpr std::size_t kLength = 40'000;
+  constexpr double kPhi = 0.3, kShock = 1.0 - kPhi * kPhi, kWalkStep = 1e-7;
+  FilterSettings settings = told(kWalkStep, 1e-9);
+  settings.state = "random-walk + ar(1)";
+  settings.state_parameters = {kPhi, kShock / kWalkStep};
+  for (const double sways : {0.0, 300.0}) {
+    Noise normal(81);
+    std::vector<double> truth, measured;
+    double colour = normal();
+    for (std::size_t i = 0; i < kLength; ++i) {
+      truth.push_back(sways * std::sin(0.01 * static_cast<double>(i)));
+      measured.push_back(truth.back() + colour);
+      colour = kPhi * colour + std::sqrt(kShock) * normal();
+    }
+    Judged judged;
+    judged.add(smooth_one(settings, measured), truth, 0, kLength);
+    EXPECT_LT(judged.mean_square(), sways == 0.0 ? 0.01 : 0.25) << sways;
+    EXPECT_GT(judged.nees(), 0.3) << sways;
+    EXPECT_LT(judged.nees(), 2.5) << sways;
+  }
+}
+
 // Recordings smoothed of which samples are missing, or of whose noise nobody was told.
 
 // Tumbling, one sample in twenty lost: a row that is absent is as good as one that is empty.
