@@ -38,8 +38,6 @@ class Walk {
   // Adds measurements, rad/s. If a stretch ends with them and is noise, returns its result. The walk is
   // learned only with `learn`.
   std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
-  // Starts a new stretch, after a motion.
-  void break_off() noexcept;
   // Samples are missing here: no mean and no difference reaches across, and the stretch goes on.
   void gap() noexcept { blocks_ = {}; }
   void set_stretch(double samples) noexcept { stretch_ = samples; }
@@ -58,11 +56,8 @@ class Walk {
   };
   using Octaves = std::array<Allan, kMaxAxes>;
 
+  void break_off() noexcept;
   void add(std::size_t axis, double rate) noexcept;
-  // True of an axis with a quarter of the stretch's samples; others are not judged.
-  [[nodiscard]] bool measured(const Allan& allan) const noexcept;
-  // True if the stretch has enough samples and, between gaps, enough long means.
-  [[nodiscard]] bool suffices() const noexcept;
   [[nodiscard]] std::optional<Found> judge() noexcept;
   // R of an axis if its noise is white plus this walk from octave `first` on; 0 if not, NaN if there are no
   // data.

@@ -82,14 +82,15 @@ OwnedRecords with_readings_alone(OwnedRecords given) {
   for (Record& record : given.records) {
     const auto rows = static_cast<double>(record.time_s.size());
     const double period_s = (record.time_s.back() - record.time_s.front()) / std::max(rows - 1.0, 1.0);
-    const auto tell = [&](const std::string& name, std::size_t each, const char* left_out) {
+    const auto tell = [&](const std::string& name, std::size_t each) {
       given.remarks.push_back(name + " is read in every " + std::to_string(each) +
-                              " samples and held between: " + left_out + given.of_several(record));
+                              " samples and held between; only its readings are used" +
+                              given.of_several(record));
     };
     if (const std::optional<std::size_t> each =
             held_for(record.reference_radps, kLongestReference_s / period_s)) {
       keep_rows(record, readings_of(record.reference_radps, *each), given.columns);
-      tell(record.reference_name, *each, "only the rows of its readings are used");
+      tell(record.reference_name, *each);
     }
     for (RecordChannel& channel : record.channels) {
       const std::optional<std::size_t> each = held_for(channel.values, kLongestChannel_s / period_s);
@@ -98,7 +99,7 @@ OwnedRecords with_readings_alone(OwnedRecords given) {
           given.columns.emplace_back(channel.values.size(), std::numeric_limits<double>::quiet_NaN());
       for (const std::size_t i : readings_of(channel.values, *each)) alone[i] = channel.values[i];
       channel.values = alone;
-      tell(channel.name, *each, "what is held is left out");
+      tell(channel.name, *each);
     }
   }
   return given;

@@ -85,8 +85,7 @@ LateBy with_growth(const Record& record, double period_s, LateBy late_by) {
     std::list<Samples> columns;
     const Record now = aligned(record, period_s, late_by, columns);
     const auto delay_in = [&](double from, double to) {
-      const auto found = delay_of(part_of(now, samples_in(now, {from, to})), period_s);
-      return found ? *found : ReferenceDelay{};
+      return delay_of(part_of(now, samples_in(now, {from, to})), period_s).value_or(ReferenceDelay{});
     };
     const ReferenceDelay first = delay_in(0.0, 0.5), second = delay_in(0.5, 1.0);
     const double more_s = second.delay_s - first.delay_s;

@@ -134,27 +134,16 @@ struct DeadZone {
   double p_value = 1.0;
 };
 
-// The width of most gain, between its neighbours on the scan; close: gain of a width that is within its standard error.
-void refine(const std::vector<Turns>& records, double least, double white_variance, double factor,
-            DeadZone& zone) {
-  constexpr int kSteps = 8;  // to either side
-  for (;;) {
-    const double step = std::pow(factor, 1.0 / kSteps);
-    std::vector<std::pair<double, double>> tried;  // half width, gain
-    for (int i = -kSteps; i <= kSteps; ++i) {
-      const double width = zone.half_width * std::pow(step, i);
-      tried.emplace_back(width, explained_by(records, least, width).gain);
-    }
-    const auto best = std::ranges::max_element(tried, {}, &std::pair<double, double>::second);
-    const auto close = [&](const auto& each) { return each.second > best->second - white_variance; };
-    const double from = std::ranges::find_if(tried, close)->first;
-    const double to = std::find_if(tried.rbegin(), tried.rend(), close)->first;
-    zone.half_width = best->first;
-    zone.half_width_error = 0.5 * (to - from + zone.half_width * (step - 1.0));
-    zone.ratio = best->second / white_variance;
-    if (std::ranges::count_if(tried, close) > kSteps / 2 || step < 1.0 + 1e-6) return;
-    factor = step;
-  }
+struct ZoneWidth {
+  double half_width = 0.0, gain = 0.0;
+};
+
+std::vector<ZoneWidth> widths_between(const std::vector<Turns>& records, double least, double from, double to,
+                                      double factor) {
+  std::vector<ZoneWidth> tried;
+  for (double width = from; width < to; width *= factor)
+    tried.push_back({width, explained_by(records, least, width).gain});
+  return tried;
 }
 
 // rates: true rates on the grid of the errors, by record, NaN missing; white_variance: of a sample.
@@ -177,17 +166,25 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const double narrowest = std::max(least, kLeastWidth * most);
   if (!(white_variance > 0.0) || !(narrowest < widest)) return std::nullopt;
   DeadZone zone;
-  for (double width = widest; width > narrowest; width /= kFactor) {
-    const double ratio = explained_by(records, least, width).gain / white_variance;
-    if (ratio > zone.ratio) zone.ratio = ratio, zone.half_width = width;
-  }
+  const ZoneWidth coarse =
+      std::ranges::max(widths_between(records, least, narrowest, widest, kFactor), {}, &ZoneWidth::gain);
+  if (!(coarse.gain > 0.0)) return std::nullopt;
+  const double step = std::pow(kFactor, 1.0 / 64.0);
+  const std::vector<ZoneWidth> tried =
+      widths_between(records, least, coarse.half_width / kFactor, coarse.half_width * kFactor, step);
+  const ZoneWidth best = std::ranges::max(tried, {}, &ZoneWidth::gain);
+  // True if twice the log-likelihood is within one of the maximum.
+  const auto close = [&](const ZoneWidth& each) { return each.gain > best.gain - white_variance; };
+  zone.half_width = best.half_width;
+  zone.half_width_error =
+      0.5 * (std::find_if(tried.rbegin(), tried.rend(), close)->half_width -
+             std::ranges::find_if(tried, close)->half_width + best.half_width * (step - 1.0));
+  zone.ratio = best.gain / white_variance;
   const double tries =
       independent_columns(static_cast<std::size_t>(std::log(widest / narrowest) / std::log(kFactor)));
   // The width is a second parameter.
-  const auto chance = [&] { return std::min(1.0, kProfiled * chi_squared_above(zone.ratio, 2.0) * tries); };
-  if (!(zone.ratio > 0.0) || chance() > kShare * significance) return std::nullopt;
-  refine(records, least, white_variance, kFactor, zone);
-  zone.p_value = chance();
+  zone.p_value = std::min(1.0, kProfiled * chi_squared_above(zone.ratio, 2.0) * tries);
+  if (zone.p_value > kShare * significance) return std::nullopt;
   const Explained inside = explained_by(records, least, zone.half_width);
   zone.coefficient = inside.product / inside.square;
   zone.coefficient_error = std::sqrt(white_variance / inside.square);

@@ -162,9 +162,10 @@ TEST(Smoother, AModelsColourIsNoise) {
   for (const double sways : {0.0, 300.0}) {
     Noise normal(81);
     std::vector<double> truth, measured;
-    double colour = normal();
+    double colour = normal(), level = 0.0;
     for (std::size_t i = 0; i < kLength; ++i) {
-      truth.push_back(sways * std::sin(0.01 * static_cast<double>(i)));
+      level += std::sqrt(kWalkStep) * normal();
+      truth.push_back(level + sways * std::sin(0.01 * static_cast<double>(i)));
       measured.push_back(truth.back() + colour);
       colour = kPhi * colour + std::sqrt(kShock) * normal();
     }
