@@ -122,7 +122,7 @@ struct Diagnosis {
   HeadingPrediction heading;  // if the channels behave as in the longest record
   NoisePosterior noise_posterior;
   std::vector<ReferenceDelay> reference_delays;  // of the records with a reference
-  std::vector<std::string> remarks;  // further remarks for the user, one sentence each
+  std::vector<std::string> remarks;              // further remarks for the user, one sentence each
   DiagnosisSeries series;
 };
 
