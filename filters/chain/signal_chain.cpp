@@ -193,7 +193,7 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
 // Until a stretch of the rate is noise (white over every octave, plus a walk). While the sensor moves, its
 // rate is published as measured.
 void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
-  if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.break_off();
+  if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.gap();
   // Repeated values do not show noise.
   const std::optional<Walk::Found> found =
       start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);

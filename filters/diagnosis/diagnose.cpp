@@ -8,7 +8,6 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
@@ -27,6 +26,7 @@
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/earth_rate.h"
 #include "filters/diagnosis/search/plausible.h"
+#include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
@@ -147,14 +147,21 @@ class Run {
     search();
   }
 
-  // Hysteresis is not corrected by the daemon, but the search is repeated without it.
+  // Which effects there are is decided without the loop, which looks like other forms. The daemon does not correct the
+  // loop, so what those effects can describe of it stays in the error, to which their coefficients are fitted.
   void separate_hysteresis() {
     result_.hysteresis =
         find_hysteresis(reconstructed_, candidates_of(found_.chosen), found_.noise, options_.significance);
     if (!result_.hysteresis) return;
-    take_out(*result_.hysteresis, reconstructed_, data_.grid);
-    reconstructed_.grid.error = data_.grid.error;
+    Eigen::VectorXd& error = reconstructed_.grid.error;
+    const Eigen::VectorXd with_loop = error;
+    take_out(*result_.hysteresis, reconstructed_, reconstructed_.grid);
     search();
+    Eigen::VectorXd loop = with_loop - error;
+    const Columns columns = design(reconstructed_, candidates_of(found_.chosen));
+    Projection(columns.rightCols(columns.cols() - 1)).take_out_of(loop);
+    error = with_loop - loop;
+    data_.grid.error = error;
   }
 
   void drop_what_a_capture_denies() {
@@ -219,9 +226,6 @@ class Run {
   }
 
   void report_rest() {
-    result_.channel_delays =
-        delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
-    for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained = describe_rest(records_, errors_, of_samples_, found_.noise, data_.grid,
                                         options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));

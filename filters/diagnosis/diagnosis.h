@@ -63,7 +63,7 @@ struct Unexplained {
 // Heading error of the next capture after correction by the model. The bias is the mean over the first
 // `aligned_s` seconds at rest; the angle is integrated from then on. Promised is the root of the error's
 // expected square. It includes the noise with its uncertainty, parameter errors (time constants too), and known
-// but uncorrected effects: a line at any phase, hysteresis, a dead zone. Not included: what the diagnosis did not
+// but uncorrected effects: a line at any phase, hysteresis. Not included: what the diagnosis did not
 // detect, steps, and channels outside their fitted range.
 struct HeadingPrediction {
   double aligned_s = 0.0;
@@ -78,13 +78,6 @@ struct HeadingPrediction {
 struct ReferenceDelay {
   std::string record;
   double delay_s = 0.0;  // negative: reference early or rate late
-  double std_error_s = 0.0;
-};
-
-// Delay of a channel in the log: a value is valid delay_s before its stamp.
-struct ChannelDelay {
-  std::string channel;
-  double delay_s = 0.0;  // negative: early
   double std_error_s = 0.0;
 };
 
@@ -129,8 +122,7 @@ struct Diagnosis {
   HeadingPrediction heading;  // if the channels behave as in the longest record
   NoisePosterior noise_posterior;
   std::vector<ReferenceDelay> reference_delays;  // of the records with a reference
-  std::vector<ChannelDelay> channel_delays;
-  std::vector<std::string> remarks;  // further remarks for the user, one sentence each
+  std::vector<std::string> remarks;              // further remarks for the user, one sentence each
   DiagnosisSeries series;
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
@@ -62,13 +62,33 @@ std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) 
   return found;
 }
 
-// Advances early channels as the daemon does by waiting.
+// The channel as it is known `delay_s` later: linear between fine steps, constant at the begin of a record.
+void delay(const BlockGrid& grid, double delay_s, FineChannel& channel) {
+  const double steps = delay_s / grid.fine_s, whole = std::ceil(steps), share = whole - steps;
+  const auto moved = [&](std::vector<double>& values) {
+    const std::vector<double> before = values;
+    for (const BlockRange& record : grid.records) {
+      const BlockRange fine = grid.fine_steps(record);
+      const auto at = [&](double k) {
+        return before[std::max(fine.first, static_cast<std::size_t>(std::max(k, 0.0)))];
+      };
+      for (std::size_t k = fine.first; k < fine.end && !before.empty(); ++k) {
+        const double from = static_cast<double>(k) - whole;
+        values[k] = (1.0 - share) * at(from) + share * at(from + 1.0);
+      }
+    }
+  };
+  moved(channel.values);
+  moved(channel.power);
+}
+
+// Delays early channels as the daemon does by waiting.
 void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
   bool any = false;
   for (const ChannelRange& range : ranges) {
     const std::optional<std::size_t> channel = data.index_of(range.channel);
     if (!(range.early_s > 0.0) || !channel) continue;
-    undo_delay(data.grid, -range.early_s, data.channels[*channel]);
+    delay(data.grid, range.early_s, data.channels[*channel]);
     any = true;
   }
   if (any) rebuild_differences(data);

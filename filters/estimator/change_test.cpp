@@ -2,6 +2,7 @@
 #include "filters/estimator/change_test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "filters/estimator/noise.h"
@@ -46,17 +47,17 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   }
 }
 
-// Bayes: the prior probability of a change over the horizon is its average at this rest. A sum that
-// contradicts a change counts as none.
+// Bayes: the prior probability of a change over the horizon is its average at this rest, to which a sum that contradicts
+// one adds nothing.
 void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
   Lanes likely = Lanes::Zero();
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-    if (!(nats[a] > 0.0)) continue;
+    if (!(now.mask[a] > 0.0)) continue;
     const double often = (0.5 * h + c.times[a]) / (h + age_);
     const double begun = often * exponential(std::min(nats[a], kEvidence));
     likely[a] = begun / (begun + 1.0 - often);
   }
-  c.times += now.mask * likely;
+  c.times += (nats > 0.0).select(now.mask * likely, 0.0);
   change_variance_ = change_variance_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
 }
 
@@ -85,8 +86,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   }
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
-  const Lanes limit = c.spread * n * likely, square = c.shrinks * c.sum.square();
-  if ((square > limit).any()) expect(c, h, (square - limit) / (n * likely), now);
+  expect(c, h, c.shrinks * c.sum.square() / (n * likely * common.second) - c.spread, now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;
@@ -97,8 +97,12 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
 std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
                                             double rarity, double lag) noexcept {
   const Lanes capped = now.surprise.min(2.0 * rarity);
-  const Common common{(now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations),
-                      now.surprise.min(kFarSquare), (second_ / kOtherNoise).max(1.0), 2.0 * rarity,
+  const double most = std::sqrt(2.0 * rarity);
+  const Common common{(now.innovation * now.inverse.sqrt()).max(-most).min(most),
+                      now.surprise.min(kFarSquare),
+                      (second_ / kOtherNoise).max(1.0),
+                      second_.max(1.0),
+                      2.0 * rarity,
                       logarithm(now.rest_factor)};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
@@ -106,7 +110,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   widest_.setOnes();
   suspected_ = false;
   std::optional<std::size_t> found;
-  double most = 0.0;
+  double furthest = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     contest(trackers, j, now, common, colour);
     const Contest& c = contest_[j];
@@ -114,8 +118,8 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
     suspected_ = true;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
       const double same = same_size(c, a), over = c.ratio[a] - kEvidence;
-      if (over <= most || same <= logarithm(lag)) continue;
-      most = over;
+      if (over <= furthest || same <= logarithm(lag)) continue;
+      furthest = over;
       found = j;
     }
   }

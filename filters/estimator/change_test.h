@@ -50,7 +50,8 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    Lanes clipped, squares, excess;  // excess: variance relative to the largest expected from the known noise
+    // Innovations clipped and squared; their variance relative to the largest expected from the known noise, and to R.
+    Lanes clipped, squares, excess, second;
     double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,

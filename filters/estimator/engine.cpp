@@ -34,7 +34,7 @@ void Engine::restart() noexcept {
   const Lanes owed = follow_.ledger.owed();
   follow_ = Follower(axes_, period_s_, follows_);
   if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
-  noise_.break_off();
+  noise_.gap();
   started_ = 0;
   unmeasured_ = {};
 }
@@ -352,7 +352,7 @@ bool Engine::rests(const Step& s) const noexcept {
 void Engine::learn(const Step& s) noexcept {
   if (!settings_.follow_manoeuvres) return;
   const bool at_rest = (s.out.flags & kAtRest) != 0;
-  if (s.dt_s > kShortGap * period_s_ || s.noise_scale != 1.0) noise_.break_off();
+  if (s.dt_s > kShortGap * period_s_ || s.noise_scale != 1.0) noise_.gap();
   if (!s.outlier && (at_rest || follow_.moving))
     noise_.learn(s.in.rate_radps, s.sample.valid, at_rest, *rest_);
 }

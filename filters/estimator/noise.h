@@ -115,8 +115,8 @@ class SensorNoise {
   // Learns from a measurement and updates the filter. At rest: the walk, and R if it is lower than known. In
   // a manoeuvre: R, if the apparent motion is white for a minute.
   void learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept;
-  // Starts a new stretch, after a gap or a change of the averaging time.
-  void break_off() noexcept { walk_.break_off(); }
+  // After missing samples or a change of the averaging time.
+  void gap() noexcept { walk_.gap(); }
 
   // One figure of each axis; 1 for lanes without axis.
   [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept {

@@ -13,6 +13,8 @@ namespace {
 
 // Overlapping differences of neighbouring blocks count for two thirds of their number.
 constexpr double kIndependent = 2.0 / 3.0;
+// Axes with fewer differences of a stretch's samples are not judged.
+constexpr double kMeasured = 0.25 * kIndependent;
 // Octaves with fewer differences are not used.
 constexpr double kFewest = 5.0;
 // Standard deviations: by chance one of 1000 octaves, in stretches of ten, exceeds it.
@@ -24,6 +26,8 @@ constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 6.7;
 // First long octave, 64 samples: there the angle of shaking is bounded, and output filters are faster.
 constexpr std::size_t kLong = 6;
+// Octave that must have been seen, 256 samples: the longest one of a stretch without gaps.
+constexpr std::size_t kJudged = 8;
 // Difference of -2 log-likelihood that refutes: e^6.
 constexpr double kSurely = 12.0;
 // Difference of -2 log-likelihood of one standard error.
@@ -68,8 +72,8 @@ void Walk::recall(double ratio, double samples) noexcept {
   recalled_samples_ = std::min(samples, 0.5 * kMemory * kStretch);
 }
 
+// Starts a new stretch, after a motion.
 void Walk::break_off() noexcept {
-  if (in_stretch_ == 0.0) return;
   blocks_ = {};
   lately_ = {};
   in_stretch_ = 0.0;
@@ -80,7 +84,11 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
   if (std::exchange(learn_, learn) != learn) break_off();
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
-  return ++in_stretch_ >= stretch_ ? judge() : std::nullopt;
+  if (++in_stretch_ < stretch_) return {};
+  const bool seen = std::ranges::all_of(lately_, [&](const Allan& allan) {
+    return allan.counts[0] < kMeasured * stretch_ || allan.counts[kJudged] >= kFewest;
+  });
+  return seen ? judge() : std::nullopt;
 }
 
 void Walk::add(std::size_t axis, double rate) noexcept {
@@ -165,7 +173,7 @@ std::optional<Walk::Found> Walk::judge() noexcept {
   Found found{{}, ratio_, true};
   for (std::size_t a = 0; noise && a < kMaxAxes; ++a) {
     const Allan& allan = lately_[a];
-    if (allan.counts[0] < 0.25 * kIndependent * stretch_) continue;
+    if (allan.counts[0] < kMeasured * stretch_) continue;
     double level = 0.0;
     for (std::size_t first = 0; first <= kMostColour && level == 0.0; ++first) {
       level = white_noise(allan, trial, first);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns a sensor's noise from its data: white noise of each axis and the random walk of the rate.
 //
-// Used at the start, at rest, and for higher noise. README.md says which stretch is noise. The walk is the ratio q dt / R, on a grid, with the largest likelihood of the long octaves over a million
-// samples; R is free.
+// Used at the start, at rest, and for higher noise. README.md says which stretch is noise. The walk is the ratio
+// q dt / R, on a grid, with the largest likelihood of the long octaves over a million samples; R is free.
 #pragma once
 
 #include <array>
@@ -38,8 +38,8 @@ class Walk {
   // Adds measurements, rad/s. If a stretch ends with them and is noise, returns its result. The walk is
   // learned only with `learn`.
   std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
-  // Starts a new stretch after a motion or gap.
-  void break_off() noexcept;
+  // Samples are missing here: no mean and no difference reaches across, and the stretch goes on.
+  void gap() noexcept { blocks_ = {}; }
   void set_stretch(double samples) noexcept { stretch_ = samples; }
   // Number of samples behind the ratio.
   [[nodiscard]] double samples() const noexcept { return samples_ + recalled_samples_; }
@@ -56,6 +56,7 @@ class Walk {
   };
   using Octaves = std::array<Allan, kMaxAxes>;
 
+  void break_off() noexcept;
   void add(std::size_t axis, double rate) noexcept;
   [[nodiscard]] std::optional<Found> judge() noexcept;
   // R of an axis if its noise is white plus this walk from octave `first` on; 0 if not, NaN if there are no

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/smoother/smoother.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +9,7 @@
 
 #include "filters/estimator/estimator.h"
 #include "filters/smoother/motion_pace.h"
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 namespace {
@@ -72,6 +74,22 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool learn_walk, bool
   return pass;
 }
 
+// Noise of a measurement with the model's colour, as if white: its variance, or the density of long means (the sum of
+// the autocovariances), whichever is larger. In units of the white part.
+double whole_noise(const FilterSettings& settings, double period_s) {
+  const auto model = make_state_model(settings.state, settings.state_parameters, period_s);
+  const int n = model->states();
+  Eigen::MatrixXd transition(n, n), driving(n, n);
+  model->discretise(period_s, transition, driving);
+  const Eigen::VectorXd h = model->measurement();
+  const Eigen::MatrixXd colour = settings.process_noise * model->colour();
+  const auto coloured = (colour.diagonal().array() > 0.0).cast<double>().matrix().asDiagonal();
+  const Eigen::MatrixXd sums = Eigen::MatrixXd::Identity(n, n) - coloured * transition * coloured;
+  const double variance = h.dot(colour * h);
+  const double density = 2.0 * h.dot(sums.partialPivLu().solve(colour * h)) - variance;
+  return 1.0 + std::max(variance, density) / settings.measurement_noise;
+}
+
 // Walk for which the filter's steady-state gain is K: Q/R = K^2 / (1-K).
 double walk_of(double gain, double noise) { return noise * gain * gain / (1.0 - gain); }
 
@@ -103,6 +121,7 @@ Smoothed smooth_axis(FilterSettings settings, bool learn_walk, const Axis& axis,
   const std::size_t length = axis.rate.size();
   // The forward run starts with the noise learned by the backward run.
   const bool learns = learn_walk && settings.state == "random-walk";
+  const double whole = whole_noise(settings, axis.period_s);
   const Pass backwards = run(settings, axis, learns, true);
   settings.measurement_noise = backwards.learned.measurement_noise;
   settings.process_noise = backwards.learned.process_noise;
@@ -111,10 +130,10 @@ Smoothed smooth_axis(FilterSettings settings, bool learn_walk, const Axis& axis,
   Samples rate(axis.rate), walk(length);
   for (std::size_t i = 0; i < length; ++i)
     if (is_outlier(forwards.found[i], backwards.found[i], memories[i] <= pace::kRest)) rate[i] = std::nan("");
-  // For a model with more states the walk follows from its smallest gain.
-  const double noise = settings.measurement_noise, walked = settings.state == "random-walk"
-                                                                ? settings.process_noise * axis.period_s
-                                                                : walk_of(forwards.least_gain, noise);
+  const double noise = whole * settings.measurement_noise;
+  // For a model of another rate the walk follows from its smallest gain.
+  const double walked = settings.state.starts_with("random-walk") ? settings.process_noise * axis.period_s
+                                                                  : walk_of(forwards.least_gain, noise);
   for (std::size_t i = 0; i < length; ++i) walk[i] = walked * steps[i];
   RateCourse course{rate, walk, steps, {}};
   find_paces(course, noise, std::max(kLeastBehind, std::sqrt(noise / walked)), memories);

@@ -57,6 +57,8 @@ std::string known_unit(const TableSample& table, const TableColumn& column) {
   // Xsens: a clock of 10 kHz; of a DOT, which sends 120 samples/s at most, of 1 MHz.
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return step < 1e6 / 120.0 - 1.0 ? "100us" : "us";
+  const std::string last = column.name.substr(column.name.rfind('_') + 1);
+  if (time_unit(last) && !says(last, Role::no_rate)) return last;
   for (const std::string& word : words.words)
     for (const char* unit : {"s", "ms", "us", "ns"})
       if (time_unit(word) == seconds_a(unit)) return unit;
@@ -93,6 +95,7 @@ void settle_unit(TimeCandidate& found, const std::vector<double>& values) {
         rate_hz < 10.0 * kFastest_hz) {
       found.units = {unit};
       found.time.unit = unit;
+      if (rate_hz < kSlowest_hz) found.time.remark = remark_on(found.time, step);
       return;
     }
     if (rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz) found.units.push_back(unit);

@@ -15,7 +15,7 @@ constexpr std::string_view kSpreadsheet =
     "is a spreadsheet or another archive, expected CSV; the program that wrote it saves it so";
 constexpr std::string_view kRos2 =
     "is a bag of ROS 2, expected CSV; 'ros2 bag play' with 'ros2 topic echo --csv TOPIC' makes it";
-constexpr std::array<Container, 15> kContainers{
+constexpr std::array<Container, 16> kContainers{
     {{{"PK\x03\x04", 4}, kSpreadsheet},
      {{"\xD0\xCF\x11\xE0", 4}, kSpreadsheet},
      {"MATLAB 5.0 MAT-file", "is a MATLAB file before version 7.3, expected one of 'save -v7.3'"},
@@ -32,6 +32,8 @@ constexpr std::array<Container, 15> kContainers{
      {"TDSm",
       "is a TDMS file of LabVIEW, expected CSV; 'tdmsinfo' and to_dataframe().to_csv of nptdms make it"},
      {"H Product:Blackbox", "is a log of Betaflight, expected CSV; 'blackbox_decode' makes it"},
+     {"version https://git-lfs.",
+      "is a pointer of Git LFS, expected the file that it stands for; 'git lfs pull' fetches it"},
      {"PAR1", "is a Parquet file, expected CSV; pandas.read_parquet(FILE).to_csv makes it"}}};
 
 // JSON that is no table: nested, of several kinds, or all in one line.

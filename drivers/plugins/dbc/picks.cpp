@@ -123,13 +123,18 @@ class Reader {
     const bool with_message = written.find('.') != std::string_view::npos;
     std::string list;
     std::vector<std::string> names;
-    std::size_t n = 0;
+    std::vector<Pick> all;
     for (const Message& m : out_.database.messages)
-      for (const Signal& s : m.signals) {
-        names.push_back(with_message ? shown(Pick{&m, &s}) : printable(display_name(s), kLongestQuote));
-        if (n++ < kShown) list += (list.empty() ? "" : ", ") + shown(Pick{&m, &s});
-      }
-    list += n > kShown ? ", … (" + std::to_string(n) + " in all)" : "";
+      for (const Signal& s : m.signals) all.push_back({&m, &s});
+    // A file of a whole car has thousands; angular rates come first.
+    std::ranges::stable_partition(all, [&](const Pick& each) {
+      return angle_unit(each.signal->unit, out_.kind == IFOG_RATE, false).has_value();
+    });
+    for (const Pick& each : all) {
+      if (names.size() < kShown) list += (names.empty() ? "" : ", ") + shown(each);
+      names.push_back(with_message ? shown(each) : printable(display_name(*each.signal), kLongestQuote));
+    }
+    list += names.size() > kShown ? ", … (" + std::to_string(names.size()) + " in all)" : "";
     list += did_you_mean(written, names);
     // It may be on a line that could not be parsed.
     const std::vector<std::string>& bad = out_.database.warnings;

@@ -196,10 +196,13 @@ class Spline {
   std::size_t i_ = 0;
 };
 
-std::vector<Reading> one_a_step(std::span<const double> values) {
+bool is_read(std::span<const std::uint8_t> read, std::size_t step) { return read.empty() || read[step] != 0; }
+
+std::vector<Reading> readings_in(std::span<const double> values, std::span<const std::uint8_t> read) {
   std::vector<Reading> readings;
   readings.reserve(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) readings.push_back({static_cast<double>(i), values[i]});
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (is_read(read, i)) readings.push_back({static_cast<double>(i), values[i]});
   return readings;
 }
 
@@ -207,11 +210,11 @@ Reconstruction as_read(std::span<const double> values) { return {{values.begin()
 
 }  // namespace
 
-Reconstruction reconstruct(std::span<const double> values) {
-  const std::vector<Reading> read = one_a_step(values);
-  const bool coarse = is_coarse(read);
-  const double step = coarse ? change_of(read) : 0.0;
-  const std::vector<Reading> used = coarse ? crossings(read, step) : read;
+Reconstruction reconstruct(std::span<const double> values, std::span<const std::uint8_t> read) {
+  const std::vector<Reading> readings = readings_in(values, read);
+  const bool coarse = is_coarse(readings);
+  const double step = coarse ? change_of(readings) : 0.0;
+  const std::vector<Reading> used = coarse ? crossings(readings, step) : readings;
   if (used.size() < 8) return as_read(values);
   const std::vector<Reading> few = thinned(used);
   const Drive smooth = best_drive(few, Course::kSmooth);
@@ -221,11 +224,11 @@ Reconstruction reconstruct(std::span<const double> values) {
   Spline spline(used, smooth.drive * share);
   Reconstruction result{{}, true};
   std::vector<double> taken;  // the residual must be reading noise
-  for (const Reading& each : read) {
-    double value = spline.at(each.step);
-    if (coarse) value = std::clamp(value, each.value - 0.5 * step, each.value + 0.5 * step);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    double value = spline.at(static_cast<double>(i));
+    if (coarse) value = std::clamp(value, values[i] - 0.5 * step, values[i] + 0.5 * step);
     result.values.push_back(value);
-    taken.push_back(each.value - value);
+    if (is_read(read, i)) taken.push_back(values[i] - value);
   }
   if (!coarse && !stands_still(taken)) return as_read(values);
   return variance_of(result.values) > kAboveNoise * kAboveNoise * variance_of(taken) ? result
@@ -271,9 +274,15 @@ BlockData with_reconstructed_channels(const BlockData& data) {
     for (const BlockRange& record : grid.records) {
       const bool first = record.first == 0;
       const BlockRange steps = grid.fine_steps(record);
-      const std::span<const double> readings =
-          std::span<const double>(data.channels[c].values).subspan(steps.first, steps.size());
-      const Reconstruction found = reconstruct(readings);
+      const auto part = [&](const auto& all) {
+        return all.empty() ? std::span(all) : std::span(all).subspan(steps.first, steps.size());
+      };
+      const std::span<const double> values = part(data.channels[c].values);
+      const std::span<const std::uint8_t> read = part(data.channels[c].read);
+      const Reconstruction found = reconstruct(values, read);
+      std::vector<double> readings;
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (is_read(read, k)) readings.push_back(values[k]);
       std::copy(found.values.begin(), found.values.end(),
                 channel.values.begin() + static_cast<std::ptrdiff_t>(steps.first));
       channel.smooth = found.smooth && (first || channel.smooth);

@@ -20,8 +20,9 @@ struct Reconstruction {
 // Maximum-likelihood smoothing spline (integrated random walk plus white reading noise, Kalman smoother;
 // Wecker and Ansley 1983). A channel is returned unchanged if a random walk is more likely (it jumps or
 // jitters) or if its spline is not well above the reading noise. With steps coarser than the changes only the
-// changes are used, and the result is within half a step of the reading. values: equidistant, without gaps.
-Reconstruction reconstruct(std::span<const double> values);
+// changes are used, and the result is within half a step of the reading. values: equidistant, without gaps; read: 0
+// where it is between two readings, empty: nowhere.
+Reconstruction reconstruct(std::span<const double> values, std::span<const std::uint8_t> read = {});
 
 // True if averages over 4, 16, 64 … readings scatter no more than those of white noise, within 6 standard
 // deviations. Then the channel is constant and its low-pass only noise.

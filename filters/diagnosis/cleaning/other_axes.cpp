@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "filters/diagnosis/cleaning/reference_delay.h"
-#include "filters/diagnosis/cleaning/series_fit.h"
+#include "filters/linear/columns.h"
+#include "filters/linear/normal_equations.h"
 
 namespace ifog {
 namespace {
@@ -21,26 +21,18 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
   Columns columns = Columns::Ones(vector(measured).size(), 2 + axes);
   columns.col(0) = vector(measured) - vector(reference);
   for (Eigen::Index a = 0; a < axes; ++a) columns.col(2 + a) = vector(along[static_cast<std::size_t>(a)]);
-  const std::vector<Eigen::Index> rows = complete_rows(columns);
-  if (rows.size() < 10 * static_cast<std::size_t>(columns.cols())) return Samples(measured);
-  const Eigen::VectorXd shares = least_squares(columns, rows).coefficients.tail(axes);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  Eigen::Index complete = 0;
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+    if (!columns.row(i).allFinite()) continue;
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.row(i).transpose());
+    ++complete;
+  }
+  if (complete < 10 * columns.cols()) return Samples(measured);
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  const Eigen::VectorXd shares = NormalEquations::of_measured_first(gram).coefficients().tail(axes);
   const Eigen::VectorXd corrected = vector(measured) - columns.rightCols(axes) * shares;
   return Samples(std::span<const double>(corrected.data(), measured.size()));
-}
-
-// The other axes as records, each with its reference aligned.
-OwnedRecords aligned_others(const Record& record) {
-  std::vector<Record> axes;
-  for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
-    Record axis;
-    axis.name = record.other_axes[a].name;
-    axis.time_s = record.time_s;
-    axis.rate_radps = record.other_axes[a].values;
-    if (a < record.other_references.size()) axis.reference_radps = record.other_references[a];
-    axis.origin = record.origin;
-    axes.push_back(std::move(axis));
-  }
-  return align_references(std::move(axes));
 }
 
 }  // namespace
@@ -49,14 +41,14 @@ OwnedRecords with_other_axes(OwnedRecords given) {
   const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
   if (!std::ranges::all_of(given.records, referenced)) return given;
   for (Record& record : given.records) {
-    const OwnedRecords others = aligned_others(record);
     std::vector<std::span<const double>> along{record.reference_radps};
-    for (const Record& other : others.records)
-      if (moves(other.reference_radps)) along.push_back(other.reference_radps);
-    for (const Record& other : others.records) {
-      RecordChannel axis{other.name, other.rate_radps};
-      if (moves(other.reference_radps))
-        axis.values = given.columns.emplace_back(less_its_own(axis.values, other.reference_radps, along));
+    for (const std::span<const double> reference : record.other_references)
+      if (moves(reference)) along.push_back(reference);
+    for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
+      RecordChannel axis = record.other_axes[a];
+      if (a < record.other_references.size() && moves(record.other_references[a]))
+        axis.values =
+            given.columns.emplace_back(less_its_own(axis.values, record.other_references[a], along));
       record.channels.push_back(axis);
     }
   }

@@ -14,9 +14,9 @@ namespace {
 // Wraps are removed before faults are searched, and differences are formed of repaired channels.
 OwnedRecords cleaned(const std::vector<Record>& captures) {
   check_columns(captures);
-  OwnedRecords channels =
-      with_differences(repair_channels(with_unwrapped_angles(with_even_stamps(captures))));
-  return without_turns(with_other_axes(align_references(without_leaping_rates(std::move(channels)))));
+  OwnedRecords channels = with_differences(
+      repair_channels(with_unwrapped_angles(with_readings_alone(with_even_stamps(captures)))));
+  return without_turns(with_other_axes(without_leaping_rates(align_references(std::move(channels)))));
 }
 
 }  // namespace

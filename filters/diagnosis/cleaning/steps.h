@@ -10,6 +10,12 @@ namespace ifog {
 // grid step and none on the next. Dwells of a rate table and irregular steps stay unchanged.
 OwnedRecords with_even_stamps(OwnedRecords given);
 
+// Of a reference or channel that is slower than the rate and held (a GNSS receiver's, an odometer's, a thermometer's)
+// only the readings remain: what is held is not of its time. Of a record with such a reference only the rows of its
+// readings remain. Coarse readings that stay the same at irregular times, and columns with missing values, stay
+// unchanged.
+OwnedRecords with_readings_alone(OwnedRecords given);
+
 // Repairs faults of channels: a thermometer that reads 85 or -127 °C (power-on and bus error of the DS18B20),
 // or a glitch. Readings that the daemon's rule (plausible_reading.h) rejects both forwards and backwards in
 // time are faults, so a lasting step is none. They are interpolated if shorter than a minute, else missing.

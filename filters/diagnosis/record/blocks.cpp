@@ -188,14 +188,17 @@ StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<doub
 
 // values: by record.
 FineChannel fine_channel(const BlockGrid& grid, const std::vector<StepStarts>& starts,
-                         const std::string& name, const std::vector<std::span<const double>>& values) {
+                         const std::string& name, const std::vector<std::span<const double>>& values,
+                         bool two_valued = false) {
   FineChannel channel;
   channel.name = name;
+  channel.two_valued = two_valued;
   const bool several = grid.fine_s > grid.sample_s;  // samples per step > 1
   for (std::size_t r = 0; r < values.size(); ++r) {
-    const StepMeans steps = step_means(values[r], starts[r], several);
+    const StepMeans steps = step_means(values[r], starts[r], several, two_valued);
     channel.values.insert(channel.values.end(), steps.means.begin(), steps.means.end());
     channel.power.insert(channel.power.end(), steps.power.begin(), steps.power.end());
+    channel.read.insert(channel.read.end(), steps.read.begin(), steps.read.end());
   }
   const auto [low, high] = std::ranges::minmax(channel.values);
   channel.low = low;
@@ -248,8 +251,8 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     std::vector<std::span<const double>> values;
     for (const Record& record : records) values.push_back(values_of(record, channel.name));
     if (std::ranges::any_of(values, [](const auto& each) { return each.empty(); })) continue;
-    data.channels.push_back(fine_channel(data.grid, starts, channel.name, values));
-    data.channels.back().two_valued = is_switch(records, channel.name);
+    data.channels.push_back(
+        fine_channel(data.grid, starts, channel.name, values, is_switch(records, channel.name)));
     data.channels.back().of_axis = !axis_of_rate(channel.name).empty();
     data.channels.back().period = channel.period;
   }

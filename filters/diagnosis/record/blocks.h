@@ -67,8 +67,9 @@ void centre_records(const BlockGrid& grid, Rows& values) {
 
 struct FineChannel {
   std::string name;
-  std::vector<double> values;  // on the fine grid of all records; gaps hold the last value
-  std::vector<double> power;   // variance within each fine step; empty if a step is one sample
+  std::vector<double> values;      // on the fine grid of all records; interpolated between readings
+  std::vector<std::uint8_t> read;  // 0: a step between two readings
+  std::vector<double> power;       // variance within each fine step; empty if a step is one sample
   double low = 0.0, high = 0.0;
   bool varies = false;
   bool still = false;       // only reading noise: its averages are those of white noise

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace ifog {
 namespace {
 
-// Interpolates linearly between the steps on either side of a gap; a jump would have an unrealistic
+// Interpolates linearly between the steps on either side of those without a value; a jump would have an unrealistic
 // derivative.
-void bridge_holes(const StepStarts& first, std::span<double> means) {
+void bridge_holes(const std::vector<std::uint8_t>& known, std::span<double> means) {
   std::size_t last = 0;
   for (std::size_t k = 0; k < means.size(); ++k) {
-    if (first[k] == first[k + 1]) continue;
+    if (known[k] == 0) continue;
     for (std::size_t j = last + 1; j < k; ++j)
       means[j] = means[last] +
                  (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
@@ -38,11 +39,12 @@ StepStarts step_starts(const Record& record, double fine_s, std::size_t steps) {
   return first;
 }
 
-StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power) {
+StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds) {
   StepMeans out;
-  auto& [means, power] = out;
+  auto& [means, power, read] = out;
   const std::size_t steps = starts.size() - 1;
-  bool known = false;  // steps before the first value use that value
+  std::vector<std::uint8_t> known(steps);
+  bool any = false;  // steps before the first value use that value
   double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
     double sum = 0.0, square = 0.0;
@@ -53,15 +55,14 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
       square += values[i] * values[i];
       ++count;
     }
-    if (count && !known) {
-      held = sum / count;
-      std::fill(means.begin(), means.end(), held);
-    }
-    if (count) held = sum / count, known = true;
+    if (count > 0) held = sum / count;
+    if (count > 0 && !std::exchange(any, true)) std::ranges::fill(means, held);
+    known[k] = count > 0 || (holds && any && starts[k] < starts[k + 1]) ? 1 : 0;
     means.push_back(held);
+    read.push_back(known[k] != 0 || !any || starts[k] == starts[k + 1] ? 1 : 0);
     if (with_power) power.push_back(count ? std::max(0.0, square / count - held * held) : 0.0);
   }
-  bridge_holes(starts, means);
+  bridge_holes(known, means);
   return out;
 }
 

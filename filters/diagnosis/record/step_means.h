@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,10 +20,11 @@ StepStarts step_starts(const Record& record, double fine_s, std::size_t steps);
 
 struct StepMeans {
   std::vector<double> means, power;  // power: variance within a step
+  std::vector<std::uint8_t> read;    // 0: rows without a value, interpolated between those with one
 };
 
-// Means of a column over each step. A step without a value holds the last one; where the record has no rows,
-// linear interpolation.
-StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power);
+// Means of a column over each step; linear interpolation where there is no value. holds: a switch, which keeps its value
+// over rows without one.
+StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds);
 
 }  // namespace ifog

@@ -20,7 +20,7 @@ constexpr double kHighest = 0.5;  // cycles per sample, highest frequency of a b
 constexpr double kCentreInside =
     0.1;  // smallest distance of a transition's centre from the range's edge, as a share
 // Extra cost in twice the log-likelihood of less usual effects: a gradient compared with a temperature,
-// another axis, a product of two field components, a fringe with its free period.
+// another axis, a product of two field components.
 constexpr double kBolder = 4.0;
 // An axis was turned if its rate reaches this share of the own axis's, and is not a copy of it.
 constexpr double kTurned = 0.05;
@@ -92,19 +92,6 @@ void add_transitions(const BlockData& data, std::size_t channel, std::vector<Can
   }
 }
 
-// Fewer fringes look like a polynomial; more are lost in the thermometer's noise.
-void add_fringes(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  constexpr double kFewest = 1.25, kMost = 12.0;  // per range
-  const FineChannel& source = data.channels[channel];
-  if (kind_of(source.name) != ChannelKind::kTemperature || data.grid.dwells) return;
-  for (double fringes = kFewest; fringes <= kMost; fringes += kStepOfFringes)
-    for (const Form form : {Form::kCosine, Form::kSine}) {
-      found.push_back(candidate_of(form, channel));
-      found.back().period = (source.high - source.low) / fringes;
-      found.back().of_channel = kBolder;
-    }
-}
-
 // The square of a switch is the switch; what it heats follows with a lag.
 void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   found.push_back(candidate_of(Form::kLinear, channel));
@@ -129,7 +116,6 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
     add_transitions(data, channel, found);
-    add_fringes(data, channel, found);
     // The derivative of a horizontal acceleration is rotation times g, since tilt changes gravity's share.
     // Without a reference it cannot be distinguished. With one that moves it is the change of rotation, which
     // delay or interpolation of the reference turns into an error.
@@ -238,10 +224,6 @@ bool has_shape(std::span<const Candidate> effects, const Candidate& wanted) {
   return std::ranges::any_of(effects, [&](const Candidate& each) { return each.same_shape(wanted); });
 }
 
-bool is_fringe(const BlockData& data, const Candidate& candidate) {
-  return candidate.is_periodic() && !(data.channels[candidate.channel].period > 0.0);
-}
-
 bool is_power_beyond(const BlockData& data, const Candidate& candidate) {
   if (power_of(candidate.form) < 2 || candidate.channel == Candidate::kNone) return false;
   const FineChannel& source = data.channels[candidate.channel];
@@ -342,7 +324,6 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
     const FineChannel& source = data.channels[channel];
     std::vector<Candidate> swings;
     if (source.period > 0.0 && source.varies) add_angle(data, channel, swings);
-    if (may_be_factor(data, channel)) add_fringes(data, channel, swings);
     for (std::size_t i = 0; i + 1 < swings.size(); i += 2) pairs.push_back({swings[i], swings[i + 1]});
     if (source.moves && source.varies) add_band(data, channel, pairs);
     if (!may_be_factor(data, channel) || source.two_valued) continue;

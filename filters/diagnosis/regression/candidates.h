@@ -28,18 +28,12 @@ struct Candidate {
   std::size_t record = 0;               // of a step
   double period = 0.0;                  // of cosine, sine
   double centre = 0.0;                  // of a transition: channel value at its centre
-  double half_width = 0.0;  // of transition and dead_zone (not searched, see residual/dead_zone.h)
-  double of_channel = 0.0;  // additional complexity of a derived channel
+  double half_width = 0.0;              // of a transition
+  double of_channel = 0.0;              // additional complexity of a derived channel
   FirstReading first_reading = FirstReading::kError;
 
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
-  [[nodiscard]] bool is_periodic() const { return form == Form::kCosine || form == Form::kSine; }
-  // True for a cosine and a sine of the same period: one oscillation of unknown phase.
-  [[nodiscard]] bool swings_with(const Candidate& other) const {
-    return is_periodic() && other.is_periodic() && form != other.form && channel == other.channel &&
-           period == other.period;
-  }
   [[nodiscard]] bool uses(std::size_t of) const { return channel == of || with_channel == of; }
   // True if the model corrects it in this record and the next.
   [[nodiscard]] bool corrected() const { return carries_over(form) && !shown(); }
@@ -66,16 +60,12 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 // forms that cannot be subtracted, and earth_rate, which has the regressor of acceleration (findings.cpp).
 std::vector<Candidate> library(const BlockData& data);
 
-// Fringe: light on a second path (splice, connector, wrong polarisation) interferes, and temperature changes
-// the path difference, so the bias oscillates. Its period is unknown; this is the spacing of the tries.
-inline constexpr double kStepOfFringes = 0.5;  // in fringes within the range; neighbours correlate by 0.7
-bool is_fringe(const BlockData& data, const Candidate& candidate);
 // A power about a value that its channel never had: within the range it is a line, and a curve only beside one.
 bool is_power_beyond(const BlockData& data, const Candidate& candidate);
 
 // Two effects that form one law; each may be hidden without the other. Laws about an unknown point: k (c -
-// c0)^2, k g (c - c0) while switch g is on, k w (c - c0) of a scale factor; an oscillation of unknown phase;
-// a fringe; vibration power in one band.
+// c0)^2, k g (c - c0) while switch g is on, k w (c - c0) of a scale factor; an error once a turn, of
+// unknown phase; vibration power in one band.
 struct NaturalPair {
   Candidate first, second;
 };

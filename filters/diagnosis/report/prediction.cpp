@@ -85,10 +85,6 @@ Effects effects_on(const BlockData& next, const std::vector<FoundEffect>& effect
     const std::optional<Candidate> candidate = candidate_of(next, effect);
     if (!candidate || candidate->form == Form::kStep) continue;
     const double coefficient = effect.parameters.front().value;
-    if (candidate->form == Form::kDeadZone) {
-      on.uncorrected += coefficient * regressor(next, *candidate);
-      continue;
-    }
     on.gradient.col(at) = regressor(next, *candidate);
     for (std::size_t j = 1; j < effect.parameters.size(); ++j) {
       if (!(effect.parameters[j].std_error > 0.0)) continue;

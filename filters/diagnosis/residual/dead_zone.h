@@ -15,8 +15,8 @@
 namespace ifog {
 
 // Subtracts the zone's error from the residuals `rest` and from the grid's block means. nullopt, and nothing is
-// subtracted, if chance or a single crossing explains it, or if the coefficient is not -1 (a scale factor). records:
-// with a reference; its channel is the effect's.
+// subtracted, if chance or a single crossing explains it, or if the coefficient, of the crossings too, is not -1 (a scale
+// factor, noise of the reference). records: with a reference; its channel is the effect's.
 std::optional<FoundEffect> take_out_dead_zone(const std::vector<Record>& records, const std::string& channel,
                                               double significance, BlockGrid& grid,
                                               std::vector<EvenError>& errors);

@@ -53,30 +53,12 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
   }
 }
 
-// In fringes within the range, between the neighbours on the grid.
-void refine_fringe(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
-                   std::size_t at) {
-  const FineChannel& channel = data.channels[model[at].channel];
-  const double span = channel.high - channel.low, now = span / model[at].period;
-  const auto with = [&](double fringes) {
-    std::vector<Candidate> trial = model;
-    for (Candidate& each : trial)
-      if (each.same_shape(model[at]) || each.swings_with(model[at])) each.period = span / fringes;
-    return trial;
-  };
-  const auto columns = [&](double fringes) { return design(data, with(fringes)); };
-  model =
-      with(likeliest(data.grid, shape, std::max(0.9, now - kStepOfFringes), now + kStepOfFringes, columns));
-}
-
 }  // namespace
 
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at) {
   if (model[at].is_transition())
     refine_transition(data, shape, model, at);
-  else if (is_fringe(data, model[at]))
-    refine_fringe(data, shape, model, at);
   else if (model[at].searched())
     refine(data, shape, model, at);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Optimises the parameters that the search takes from a grid: time constants, transitions, fringe periods.
+// Optimises the parameters that the search takes from a grid: time constants and transitions.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace ifog {
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which = &Candidate::time_constant_s);
 
-// Optimises all searched parameters of model[at]: time constant, or centre and width of a transition, or
-// period of a fringe (both halves). A centre keeps its distance from the edges of the channel's range. Both levels
+// Optimises all searched parameters of model[at]: time constant, or centre and width of a transition. A
+// centre keeps its distance from the edges of the channel's range. Both levels
 // of a transition are visible: the range extends one half width to either side; otherwise a polynomial describes the
 // bend.
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,

@@ -24,11 +24,6 @@ constexpr double kShareOfChannels = 0.7;  // share of the significance; the rest
 constexpr double kAlike = 0.98;           // sufficient correlation of the whitened regressors
 constexpr double kImpossible = -1e300;    // score
 
-// Half a fringe is no law: with a free period it replaces the other half.
-bool swings(std::span<const Candidate> model, const Candidate& half) {
-  return std::ranges::any_of(model, [&](const Candidate& each) { return each.swings_with(half); });
-}
-
 bool has_line(std::span<const Candidate> model, std::size_t channel) {
   return std::ranges::any_of(
       model, [&](const Candidate& each) { return each.form == Form::kLinear && each.channel == channel; });
@@ -79,12 +74,12 @@ class EffectSearch {
   // True if `candidate` forms one law with an effect in `others`. Then it needs no separate proof, only the
   // gain that the Bayesian information criterion requires of one coefficient.
   [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> others) const {
-    return swings(others, candidate) || std::ranges::any_of(laws_, [&](const NaturalPair& law) {
-             const auto other = candidate.same_shape(law.second)  ? &law.first
-                                : candidate.same_shape(law.first) ? &law.second
-                                                                  : nullptr;
-             return other && has_shape(others, *other);
-           });
+    return std::ranges::any_of(laws_, [&](const NaturalPair& law) {
+      const auto other = candidate.same_shape(law.second)  ? &law.first
+                         : candidate.same_shape(law.first) ? &law.second
+                                                           : nullptr;
+      return other && has_shape(others, *other);
+    });
   }
 
   [[nodiscard]] double score(const FittedModel& model) const {
@@ -92,7 +87,6 @@ class EffectSearch {
     const auto n = static_cast<double>(data_.grid.used());
     double sum = 2.0 * model.noise.log_likelihood;
     for (std::size_t i = 0; i < effects.size(); ++i) {
-      if (is_fringe(data_, effects[i]) && !swings(effects, effects[i])) return kImpossible;
       if (is_power_beyond(data_, effects[i]) && !has_line(effects, effects[i].channel)) return kImpossible;
       const bool law = completes_a_law(effects[i], std::span(effects).first(i));
       sum -= complexity(effects[i]) + (law ? std::log(n) : threshold(effects[i]));
@@ -256,17 +250,13 @@ class EffectSearch {
   // Tries to remove, replace and reshape each effect, since early ones were chosen without the later ones.
   void revise() {
     for (std::size_t i = 0; i < model_.effects.size() && model_.effects.size() > 1;) {
-      std::vector<Candidate> others = without(model_.effects, i);
-      if (is_fringe(data_, model_.effects[i]))
-        std::erase_if(others, [&](const Candidate& each) { return each.swings_with(model_.effects[i]); });
-      const FittedModel rest = fitted(std::move(others), model_.noise.shape);
+      const FittedModel rest = fitted(without(model_.effects, i), model_.noise.shape);
       if (take({rest, score(rest)})) continue;
       take(best_addition(rest, false));
       ++i;
     }
     for (std::size_t i = 0; i < model_.effects.size(); ++i)
-      if (model_.effects[i].searched() || is_fringe(data_, model_.effects[i]))
-        take(refined(model_.effects, i, model_.noise.shape));
+      if (model_.effects[i].searched()) take(refined(model_.effects, i, model_.noise.shape));
   }
 
   void finish(SearchResult& result) {

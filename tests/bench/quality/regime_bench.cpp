@@ -146,7 +146,7 @@ Figures judge(const Regime& regime, double ratio, std::uint64_t seed) {
   return figures;
 }
 
-constexpr double kLeastNees = 0.8, kMostNees = 1.25;
+constexpr double kLeastNees = 0.75, kMostNees = 1.25;
 
 struct Options {
   std::uint64_t first_seed = 1;

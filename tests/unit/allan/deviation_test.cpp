@@ -1,35 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/deviation.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "filters/allan/gapped_deviation.h"
 #include "filters/allan/row_times.h"
 #include "filters/allan/streaming.h"
 #include "filters/allan/theo1.h"
-#include "tests/unit/allan/nist_set.h"
 #include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
+namespace ifog {
 namespace {
 
-using ifog::AngleSum;
-using ifog::Deviation;
-using ifog::nist_set;
-using ifog::Stretch;
+// NIST SP 1065, section 12.4: 1000 frequency values by a linear congruence.
+std::vector<double> nist_set() {
+  std::vector<double> y;
+  std::uint64_t n = 1234567890;
+  for (int i = 0; i < 1000; ++i) {
+    y.push_back(static_cast<double>(n) / 2147483647.0);
+    n = 16807 * n % 2147483647;
+  }
+  return y;
+}
 
 std::vector<double> allan(const std::vector<double>& rate, const std::vector<std::size_t>& m,
                           Deviation kind = Deviation::kAllan) {
   const std::vector<Stretch> all{{0, rate.size()}};
   std::vector<double> out;
-  for (const auto& p : ifog::deviation(AngleSum(rate, all), m, kind)) out.push_back(std::sqrt(p.variance));
+  for (const auto& p : deviation(AngleSum(rate, all), m, kind)) out.push_back(std::sqrt(p.variance));
   return out;
 }
 
@@ -60,7 +57,7 @@ double by_definition(const std::vector<double>& rate, std::size_t m) {
 }
 
 TEST(Deviation, LargeBiasAndRampCostNoDigits) {
-  std::vector<double> rate = ifog::simulate::noise({.N = 1e-6}, 100.0, 60000, 4);
+  std::vector<double> rate = simulate::noise({.N = 1e-6}, 100.0, 60000, 4);
   for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += 3.0 + 2e-9 * static_cast<double>(i);
   for (const std::size_t m : {1U, 7U, 300U, 29999U})
     EXPECT_NEAR(allan(rate, {m})[0] / by_definition(rate, m), 1.0, 1e-12) << m;
@@ -79,11 +76,11 @@ TEST(Deviation, AModifiedOneOfARampIsItsSlopeHoweverLong) {
 TEST(Deviation, TheLongestAverageIsTheLastWithADifference) {
   for (const Deviation kind : {Deviation::kAllan, Deviation::kModified, Deviation::kHadamard})
     for (const std::size_t n : {64U, 65U, 66U, 67U, 68U, 69U}) {
-      const auto rate = ifog::simulate::noise({.N = 1e-6}, 100.0, n, 5);
+      const auto rate = simulate::noise({.N = 1e-6}, 100.0, n, 5);
       const std::vector<Stretch> all{{0, n}};
-      const std::size_t longest = ifog::longest_average(kind, n);
+      const std::size_t longest = longest_average(kind, n);
       const std::vector<std::size_t> m{longest, longest + 1};
-      const auto points = ifog::deviation(AngleSum(rate, all), m, kind);
+      const auto points = deviation(AngleSum(rate, all), m, kind);
       EXPECT_GT(points[0].terms, 0U) << n;
       EXPECT_EQ(points[1].terms, 0U) << n;
     }
@@ -95,7 +92,7 @@ TEST(Deviation, StretchesNeverMixAcrossAHole) {
   for (std::size_t i = 150; i < 300; ++i) rate[i] = 2.0;
   const std::vector<Stretch> parts{{0, 150}, {150, 300}};
   const std::vector<std::size_t> m{1, 10, 75, 76};
-  const auto points = ifog::deviation(AngleSum(rate, parts), m);
+  const auto points = deviation(AngleSum(rate, parts), m);
   EXPECT_NEAR(points[0].variance, 0.0, 1e-28);
   EXPECT_EQ(points[0].terms, 2U * 149U);
   EXPECT_EQ(points[1].terms, 2U * 131U);
@@ -107,31 +104,25 @@ TEST(Deviation, StretchesNeverMixAcrossAHole) {
 // Two recordings that were joined, or a gyro switched off and on (an MPU6050 whose bias stepped by 0.08 °/s): the step
 // is at a hole of a second and is no random walk.
 TEST(Deviation, NoAverageReachesAcrossAHoleAtWhichTheRateSteps) {
-  std::mt19937_64 engine(5);
-  std::normal_distribution<double> noise(0.0, 1.0);
+  test::Noise noise(5, 1.0);
   std::vector<double> rate(60000);
-  for (double& value : rate) value = noise(engine);
-  const std::vector<ifog::Stretch> stretches{{0, 30000, 0}, {30100, 60000, 100}};
-  EXPECT_EQ(ifog::AngleSum(rate, stretches).parts().size(), 1U);
+  for (double& value : rate) value = noise();
+  const std::vector<Stretch> stretches{{0, 30000, 0}, {30100, 60000, 100}};
+  EXPECT_EQ(AngleSum(rate, stretches).parts().size(), 1U);
   for (std::size_t i = 30100; i < rate.size(); ++i) rate[i] += 0.5;
-  EXPECT_EQ(ifog::AngleSum(rate, stretches).parts().size(), 2U);
+  EXPECT_EQ(AngleSum(rate, stretches).parts().size(), 2U);
 }
 
 TEST(Deviation, MatchesThePublishedFiguresOfARealGyro) {
   const std::string path = IFOG_SHARED_DATA "/adis16405_imu1.csv.gz";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the measured capture " << path;
-  const ifog::Capture capture = ifog::read_capture(path);
+  const Capture capture = read_capture(path);
   const auto found = allan(capture.rate_radps[0], {2, 128, 8192, 262144});
   const std::vector<double> published{0.25747, 0.036118, 0.0070628, 0.0057232};  // deg/s
   for (std::size_t i = 0; i < found.size(); ++i)
     EXPECT_NEAR(found[i] * 180.0 / std::numbers::pi / published[i], 1.0, 0.5e-4)
         << found[i] * 180.0 / std::numbers::pi;
 }
-
-}  // namespace
-
-namespace ifog {
-namespace {
 
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -194,21 +185,16 @@ TEST(RowTimes, StampsThatScatterGiveWayToTheClockBehindThem) {
   }
 }
 
-}  // namespace
-}  // namespace ifog
-
-namespace {
-
 TEST(StreamingAllan, FollowsTheWholeRecordsDeviation) {
-  auto rate = ifog::simulate::noise({.N = 1e-6, .K = 1e-8}, 1.0, 1U << 18U, 3);
+  auto rate = simulate::noise({.N = 1e-6, .K = 1e-8}, 1.0, 1U << 18U, 3);
   for (double& r : rate) r += 1.0;  // a bias a million times the noise
-  ifog::StreamingAllan streaming;
+  StreamingAllan streaming;
   for (const double r : rate) streaming.add(r);
-  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  const std::vector<Stretch> all{{0, rate.size()}};
   std::vector<std::size_t> m;
   for (int k = 0; k < streaming.octaves(); ++k) m.push_back(std::size_t{1} << k);
   ASSERT_EQ(m.size(), 18U);
-  const auto points = ifog::deviation(ifog::AngleSum(rate, all), m);
+  const auto points = deviation(AngleSum(rate, all), m);
   for (std::size_t k = 0; k < m.size(); ++k) {
     const double exact = std::sqrt(points[k].variance);
     // Octaves 0 and 1 use every place and are the same sum; above, every quarter: a few per cent of the
@@ -221,7 +207,7 @@ TEST(StreamingAllan, FollowsTheWholeRecordsDeviation) {
 
 TEST(StreamingAllan, CountsWhatTheDefinitionCounts) {
   // A ramp of one a sample: every difference at m is m, whatever the place.
-  ifog::StreamingAllan streaming;
+  StreamingAllan streaming;
   for (int i = 0; i < 64; ++i) streaming.add(i);
   EXPECT_EQ(streaming.octaves(), 6);
   for (int k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(streaming.deviation(k), std::exp2(k) / std::sqrt(2.0)) << k;
@@ -234,7 +220,7 @@ TEST(StreamingAllan, CountsWhatTheDefinitionCounts) {
 }
 
 TEST(StreamingAllan, NothingReachesAcrossAGap) {
-  ifog::StreamingAllan streaming;
+  StreamingAllan streaming;
   for (int i = 0; i < 1000; ++i) streaming.add(1.0);
   streaming.add(std::nan(""));
   for (int i = 0; i < 1000; ++i) streaming.add(5.0);
@@ -248,16 +234,16 @@ TEST(StreamingAllan, NothingReachesAcrossAGap) {
 // simulation of long records; W FM 1, F FM 1.87 − 1.05/m^0.79, RW FM 2.70 − 1.53/m^0.85.
 TEST(Theo1, BiasIsTheHandbooks) {
   const struct {
-    ifog::simulate::NoiseLevels levels;
-    ifog::TermVariances terms;
+    simulate::NoiseLevels levels;
+    TermVariances terms;
     double a, b, c;
   } cases[] = {{{.N = 1.0}, {0, 1, 0, 0}, 1.0, 0.0, 1.0},
                {{.B = 1.0}, {0, 0, 1, 0}, 1.87, -1.05, 0.79},
                {{.K = 1.0}, {0, 0, 0, 1}, 2.70, -1.53, 0.85}};
   for (const auto& c : cases) {
-    const auto rate = ifog::simulate::noise(c.levels, 1.0, 256, 1);
-    const std::vector<ifog::Stretch> all{{0, rate.size()}};
-    for (const ifog::LongPoint& point : ifog::theo1(ifog::AngleSum(rate, all), c.terms, 0.683, 5)) {
+    const auto rate = simulate::noise(c.levels, 1.0, 256, 1);
+    const std::vector<Stretch> all{{0, rate.size()}};
+    for (const LongPoint& point : theo1(AngleSum(rate, all), c.terms, 0.683, 5)) {
       const double m = point.tau / 0.75;
       EXPECT_NEAR(point.bias / (c.a + c.b / std::pow(m, c.c)), 1.0, 0.05) << "tau " << point.tau;
       EXPECT_GT(point.tau, 64.0);
@@ -267,9 +253,9 @@ TEST(Theo1, BiasIsTheHandbooks) {
 }
 
 TEST(Theo1, ReachesThreeQuartersOfTheRecord) {
-  const auto rate = ifog::simulate::noise({.N = 1.0}, 1.0, 5000, 2);
-  const std::vector<ifog::Stretch> all{{0, rate.size()}};
-  const auto points = ifog::theo1(ifog::AngleSum(rate, all), {0, 1, 0, 0}, 0.683, 10);
+  const auto rate = simulate::noise({.N = 1.0}, 1.0, 5000, 2);
+  const std::vector<Stretch> all{{0, rate.size()}};
+  const auto points = theo1(AngleSum(rate, all), {0, 1, 0, 0}, 0.683, 10);
   ASSERT_FALSE(points.empty());
   EXPECT_NEAR(points.back().tau, 3750.0, 75.0);
 }
@@ -277,13 +263,12 @@ TEST(Theo1, ReachesThreeQuartersOfTheRecord) {
 // At the longest τ an Allan variance has one difference; Thêo1 says more, and its interval holds.
 TEST(Theo1, IntervalsHoldTheAllanVarianceOfAMixture) {
   constexpr int kRecords = 200;
-  const ifog::TermVariances terms{0.0, 1.0, 0.0, 1e-4};
+  const TermVariances terms{0.0, 1.0, 0.0, 1e-4};
   std::vector<int> inside;
   for (int record = 0; record < kRecords; ++record) {
-    const auto rate =
-        ifog::simulate::noise({.N = 1.0, .K = 1e-2}, 1.0, 256, static_cast<std::uint64_t>(record));
-    const std::vector<ifog::Stretch> all{{0, rate.size()}};
-    const auto points = ifog::theo1(ifog::AngleSum(rate, all), terms, 0.683, 4);
+    const auto rate = simulate::noise({.N = 1.0, .K = 1e-2}, 1.0, 256, static_cast<std::uint64_t>(record));
+    const std::vector<Stretch> all{{0, rate.size()}};
+    const auto points = theo1(AngleSum(rate, all), terms, 0.683, 4);
     inside.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double truth = std::sqrt(1.0 / points[i].tau + 1e-4 * points[i].tau / 3.0);
@@ -295,3 +280,4 @@ TEST(Theo1, IntervalsHoldTheAllanVarianceOfAMixture) {
 }
 
 }  // namespace
+}  // namespace ifog

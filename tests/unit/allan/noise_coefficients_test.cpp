@@ -2,18 +2,9 @@
 // Seeded simulations with known coefficients: the error bars are kept as often as they promise, terms that
 // are absent are reported absent, and a ramp is not a random walk.
 #include "filters/allan/noise/noise_coefficients.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise/curve_miss.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace {

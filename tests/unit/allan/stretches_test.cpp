@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/stretches.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "filters/allan/confidence.h"
 #include "filters/allan/deviation.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/theo1.h"
 #include "filters/rest/rest.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace ifog {

@@ -1,17 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/candump/candump.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

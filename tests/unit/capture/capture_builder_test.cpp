@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of a driver as a capture: the devices that the chain's tests have, too
 // (tests/unit/drivers/timeline_truth_test.cpp).
-#include "tests/unit/capture/read_capture.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 #include "drivers/capture/times/sample_times.h"
+#include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -79,14 +73,6 @@ TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
     EXPECT_NEAR(made.time_s.back() - made.time_s.front(), 19'999 * 2e-4, 2e-3) << modulus;
   }
 }
-
-}  // namespace
-}  // namespace ifog
-
-namespace {
-
-using ifog::SampleTimes;
-using ifog::TimeOrigin;
 
 ifog_description description(double rate_hz, std::uint32_t modulus = 0) {
   ifog_description out{};
@@ -237,3 +223,4 @@ TEST(SampleTimes, WhatComesTwiceHasNoTimeAndWhatGoesBackIsRefused) {
 }
 
 }  // namespace
+}  // namespace ifog

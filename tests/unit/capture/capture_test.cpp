@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/capture/read_capture.h"
-
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zlib.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/input_file.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 
+namespace ifog {
 namespace {
 
 namespace fs = std::filesystem;
 
-ifog::Capture capture_in(const std::string& text) { return ifog::parse_capture(text, "a.csv"); }
+Capture capture_in(const std::string& text) { return parse_capture(text, "a.csv"); }
 
 TEST(CaptureText, SortsColumnsByTheirNames) {
-  const ifog::Capture c = capture_in(
+  const Capture c = capture_in(
       "# a gyro\ntime_s,rate_x_radps,rate_y_radps,reference_rate_y_radps,temperature_degC\n"
       "0,1e-3,2,3,25.5\n0.5,,nan,+4,\n");
   EXPECT_EQ(c.comments, std::vector<std::string>{"a gyro"});
@@ -37,15 +32,15 @@ TEST(CaptureText, SortsColumnsByTheirNames) {
 }
 
 TEST(CaptureText, RefusesWithFileLineValueAndExpectation) {
-  EXPECT_EQ(ifog::refusal_of("rate_radps\n1\n"),
+  EXPECT_EQ(refusal_of("rate_radps\n1\n"),
             "a.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
-  EXPECT_EQ(ifog::refusal_of("time_s,temperature_degC\n0,1\n"),
+  EXPECT_EQ(refusal_of("time_s,temperature_degC\n0,1\n"),
             "a.csv:1: no rate column among 'temperature_degC', expected 'rate_radps' or 'rate_x_radps', …, "
             "or --column "
             "rate_x_radps=NAME:UNIT with one of these names");
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1\n1,1x\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,1x\n"),
             "a.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n"), "a.csv: no rows after the header");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n"), "a.csv: no rows after the header");
 }
 
 // What R, pandas, databases and spreadsheets make of a missing value, and of the end of a row.
@@ -53,21 +48,20 @@ TEST(CaptureText, WordsForNoValueAndSeparatorsAtTheEnd) {
   for (const std::string word : {"NA", "na", "N/A", "#N/A", "null", "NULL", "None", "-", "NaN", ""})
     for (const std::string header_end : {"", ",", ", "})
       for (const std::string row_end : {"", ",", ", "}) {
-        const ifog::Capture c = capture_in("time_s,rate_radps,temperature_degC" + header_end + "\n0,1," +
-                                           word + row_end + "\n1," + word + ",7" + row_end + "\n2,3,8\n");
+        const Capture c = capture_in("time_s,rate_radps,temperature_degC" + header_end + "\n0,1," + word +
+                                     row_end + "\n1," + word + ",7" + row_end + "\n2,3,8\n");
         ASSERT_EQ(c.size(), 3U) << word;
         EXPECT_TRUE(std::isnan(c.rate_radps[0][1])) << word;
         ASSERT_EQ(c.channels.size(), 1U) << word;
         EXPECT_TRUE(std::isnan(c.channels[0].values[0])) << word;
         EXPECT_EQ(c.channels[0].values[1], 7.0) << word;
       }
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1\n1,NAN1\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,NAN1\n"),
             "a.csv:3: rate_radps is 'NAN1', expected a number, 'nan' or nothing");
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1,,\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1,,\n"), "a.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal_of("time_s,rate_radps,\n0,1,5\n"),
             "a.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps,\n0,1,5\n"),
-            "a.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\nNA,1\n"), "a.csv:2: time_s is missing, expected a time");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\nNA,1\n"), "a.csv:2: time_s is missing, expected a time");
 }
 
 TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
@@ -76,18 +70,18 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
     time_s.push_back(i / 3.0);
     rate_radps.push_back(std::sin(i * 0.7) * 1e-5);
   }
-  const ifog::test::OwnFolder folder;
+  const test::OwnFolder folder;
   const std::string name = folder.path("a.csv.gz");
   const std::string channel = "temperature, inner_degC";
-  ifog::CsvWriter file(name, "", {"time_s", "rate_radps", channel});
+  CsvWriter file(name, "", {"time_s", "rate_radps", channel});
   file.rows(std::vector<std::span<const double>>{time_s, rate_radps, time_s});
   file.finish();
-  const ifog::Capture back = ifog::read_capture(name);
+  const Capture back = read_capture(name);
   EXPECT_EQ(back.channels.at(0).name, channel);
   EXPECT_EQ(back.time_s, time_s);
   EXPECT_EQ(back.rate_radps[0], rate_radps);
   fs::resize_file(name, fs::file_size(name) / 2);
-  const ifog::Capture cut = ifog::read_capture(name);
+  const Capture cut = read_capture(name);
   ASSERT_GT(cut.size(), 1000U);
   ASSERT_LT(cut.size(), 4000U);
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) EXPECT_EQ(cut.rate_radps[0][i], rate_radps[i]);
@@ -98,11 +92,11 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
 
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
 // short line.
-class HostileFile : public testing::Test, protected ifog::test::OwnFolder {
+class HostileFile : public testing::Test, protected test::OwnFolder {
  protected:
   template <typename Read>
   std::string refusal(Read&& read) {
-    const std::string what = ifog::test::refusal([&] { (void)read(path_); });
+    const std::string what = test::refusal([&] { (void)read(path_); });
     return what.starts_with(path_) ? what.substr(path_.size()) : what;
   }
   // `times` times the block, packed: gigabytes on some hundred kilobytes.
@@ -116,20 +110,19 @@ class HostileFile : public testing::Test, protected ifog::test::OwnFolder {
 
 TEST_F(HostileFile, ALongCellIsNamedAndNotEchoed) {
   std::ofstream(path_) << "time_s,rate_radps\n0,1\n1,x" << std::string(900'000, '7') << "\n";
-  EXPECT_EQ(refusal(ifog::read_capture), ":3: rate_radps is 'x" + std::string(59, '7') +
-                                             "… (900001 bytes)', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal(read_capture), ":3: rate_radps is 'x" + std::string(59, '7') +
+                                       "… (900001 bytes)', expected a number, 'nan' or nothing");
   std::ofstream(path_) << "time_s,rate_radps\n0,\x1b[2J\x07\n";
-  EXPECT_EQ(refusal(ifog::read_capture),
-            ":2: rate_radps is '\\x1b[2J\\x07', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal(read_capture), ":2: rate_radps is '\\x1b[2J\\x07', expected a number, 'nan' or nothing");
   std::ofstream(path_) << std::string(100'000, 'n') << ",rate_radps\n0,1\n";
-  EXPECT_LT(refusal(ifog::read_capture).size(), 200U);
+  EXPECT_LT(refusal(read_capture).size(), 200U);
 }
 
 TEST_F(HostileFile, AGzipBombStopsAtItsFirstLine) {
   pack(std::string(1U << 20U, '0'), 256);
   rusage before{}, after{};
   getrusage(RUSAGE_SELF, &before);
-  EXPECT_EQ(refusal(ifog::read_capture).substr(0, 36), ":1: a line of more than 1048576 byte");
+  EXPECT_EQ(refusal(read_capture).substr(0, 36), ":1: a line of more than 1048576 byte");
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 50'000);  // KiB
 }
@@ -140,10 +133,10 @@ TEST_F(HostileFile, AGzipBombOfShortLinesStopsToo) {
   pack(lines, 300);
   const std::string said =
       ": grows to more than 256 MiB, 100 times its size, when unpacked, expected a recording";
-  EXPECT_EQ(refusal(ifog::read_capture), said);
-  EXPECT_EQ(refusal(ifog::read_whole_file), said);
+  EXPECT_EQ(refusal(read_capture), said);
+  EXPECT_EQ(refusal(read_whole_file), said);
   pack(lines, 200);
-  EXPECT_EQ(ifog::read_whole_file(path_).size(), 200 * lines.size());
+  EXPECT_EQ(read_whole_file(path_).size(), 200 * lines.size());
 }
 
 // A wide header over short rows must not ask for rows × columns before it has seen them.
@@ -155,15 +148,10 @@ TEST_F(HostileFile, AWideHeaderReservesNoMemory) {
   std::ofstream(path_) << text;
   rusage before{}, after{};
   getrusage(RUSAGE_SELF, &before);
-  EXPECT_EQ(refusal(ifog::read_capture), ":2: 1 cells, expected 4002 (a truncated line?)");
+  EXPECT_EQ(refusal(read_capture), ":2: 1 cells, expected 4002 (a truncated line?)");
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200'000);
 }
-
-}  // namespace
-
-namespace ifog {
-namespace {
 
 // One cell that no sensor can have measured is missing; it neither refuses the capture nor stays in it.
 
@@ -196,7 +184,7 @@ TEST(Measurable, OneImpossibleCellIsMissingAndTold) {
     EXPECT_FALSE(std::isnan(table.columns[1].values[99]));
     ASSERT_EQ(table.faults.size(), 1U) << each.columns << each.cell;
     EXPECT_EQ(table.faults[0].substr(0, 11), "a.csv:102: ") << table.faults[0];
-    EXPECT_NE(table.faults[0].find("1 such cell treated as missing"), std::string::npos);
+    EXPECT_TRUE(test::has(table.faults[0], "1 such cell treated as missing"));
   }
   const Capture read = parse_capture(capture("rate_radps,accel_x_mps2", 2, 3, 0, "1e30"), "a.csv");
   EXPECT_TRUE(std::isnan(read.rate_radps[0][3]));
@@ -236,7 +224,7 @@ TEST(Measurable, AChannelOfThemIsMissingAndNoReasonToRefuse) {
   EXPECT_TRUE(std::isnan(read.channels[0].values[1]));
   EXPECT_EQ(read.channels[0].values[2], 25.0);
   ASSERT_EQ(read.faults.size(), 1U);
-  EXPECT_NE(read.faults[0].find("50 such cells treated as missing"), std::string::npos) << read.faults[0];
+  EXPECT_TRUE(test::has(read.faults[0], "50 such cells treated as missing"));
 }
 
 TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {

@@ -2,15 +2,8 @@
 // CSV files of other makers: their columns, units, separators, and what a header that is nearly right is
 // told.
 #include "drivers/capture/columns/csv_layout.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/csv/csv_rows.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <filesystem>
-#include <random>
-
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/files/output_file.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files as other programs write them: what is read of each without options, or what is offered to type.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <stdexcept>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -317,9 +310,9 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       all = error.what();
     }
     for (const std::string& part : each.said)
-      EXPECT_NE(all.find(part), std::string::npos) << part << "\nnot in\n"
-                                                   << all << "\nof\n"
-                                                   << each.text.substr(0, 300);
+      EXPECT_TRUE(test::has(all, part)) << part << "\nnot in\n"
+                                        << all << "\nof\n"
+                                        << each.text.substr(0, 300);
   }
 }
 

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures to what a device would have sent, and back, through the real plugins.
-#include "drivers/capture/recording.h"
-
-#include <gtest/gtest.h>
 #include <unistd.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
+#include "drivers/capture/recording.h"
 #include "tests/unit/capture/read_capture.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

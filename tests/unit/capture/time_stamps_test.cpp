@@ -2,15 +2,8 @@
 // Times in digits and dates. That a series of any start and unit is the same series is checked by
 // system/command_line/origins.py.
 #include "drivers/capture/times/time_stamps.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <sstream>
-#include <string>
-
 #include "tests/unit/capture/read_capture.h"
+#include "tests/unit/test.h"
 
 namespace {
 

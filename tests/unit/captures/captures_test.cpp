@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings of messages and of several runs, models of other axes, and axes of several captures.
-#include <gtest/gtest.h>
-
-#include <cerrno>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "drivers/capture/files/input_file.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tests/unit/flight/recordings.h"
 #include "tests/unit/messages.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight/flight_input.h"
@@ -72,13 +64,7 @@ TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
   EXPECT_EQ(held + reader.counts().lost_messages, 20'000U);
 }
 
-}  // namespace
-}  // namespace ifog::tools
-
 // A recording of several runs of the daemon, each with its own options of the driver.
-
-namespace ifog::tools {
-namespace {
 
 constexpr int kSamples = 40;
 
@@ -166,13 +152,7 @@ TEST(FlightRuns, OtherColumnsAreRefused) {
   EXPECT_THROW(builder.go_on_as(one), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace ifog::tools
-
 // A model of three axes on a capture that has two of them.
-
-namespace ifog::tools {
-namespace {
 
 Effect effect(const std::string& axis, const std::string& channel, std::size_t parameters) {
   Effect out;
@@ -208,13 +188,7 @@ TEST(ModelAxes, WithoutAnythingToLeaveOutItStaysAsItIs) {
   EXPECT_EQ(without_axes(three(), {""}).identity(), three().identity());
 }
 
-}  // namespace
-}  // namespace ifog::tools
-
 // Which axes a fit can use.
-
-namespace ifog::tools {
-namespace {
 
 Capture capture_of(std::size_t rows, const std::vector<std::string>& axes) {
   Capture out;

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device whose clock ticks hardly more often than it samples.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <optional>
-
 #include "drivers/timeline/timeline.h"
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

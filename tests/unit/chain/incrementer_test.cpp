@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/chain/incrementer.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

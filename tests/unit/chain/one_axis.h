@@ -2,15 +2,9 @@
 // A sensor of one axis at 1 kHz as the chain's tests want it: its settings, and what it sends at 0.01 rad/s.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One impossible number must stay without consequence, and be counted.
 #include "filters/chain/plausibility.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <numbers>
-
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/chain/signal_chain.h"
-
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/one_axis.h"
-#include "tests/unit/refusal.h"
-#include "tests/unit/sanitized.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -94,8 +85,8 @@ TEST(SignalChain, AModelOnAChannelTheSensorDoesNotHaveIsRefusedByName) {
   wrong.facts.frame_channels = wrong.facts.channels = 1;
   wrong.model = linear_in("temperature_degC", 25.0, {"coefficient", 1e-6, 1e-8, "rad/s/degC"});
   const std::string said = test::refusal([&] { const ChainParts parts(wrong); });
-  EXPECT_NE(said.find("temperature_degC"), std::string::npos) << said;
-  EXPECT_NE(said.find("it has: supply_V"), std::string::npos) << said;
+  EXPECT_TRUE(test::has(said, "temperature_degC"));
+  EXPECT_TRUE(test::has(said, "it has: supply_V"));
 }
 
 TEST(SignalChain, NewPartsGoOnWithTheAngle) {
@@ -123,8 +114,7 @@ TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     if (test::kSanitized && seed > 1) continue;
     SignalChain chain(std::make_unique<ChainParts>(unknown));
-    std::mt19937_64 engine(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     Axes walk{}, noise{}, squares{};
     Increment in;
     ChainOutput out;
@@ -135,8 +125,8 @@ TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
       in.valid_axes = 7;
       for (std::size_t a = 0; a < 3; ++a) {
         const double colour = a == 0 ? kColour : 0.0;
-        noise[a] = colour * noise[a] + std::sqrt(1.0 - colour * colour) * normal(engine);
-        walk[a] += std::sqrt(kRatio) * normal(engine);
+        noise[a] = colour * noise[a] + std::sqrt(1.0 - colour * colour) * normal();
+        walk[a] += std::sqrt(kRatio) * normal();
         in.rate_radps[a] = kNoise * (noise[a] + walk[a]);
         in.covered_s[a] = kPeriod_s;
         in.delta_theta_rad[a] = in.rate_radps[a] * kPeriod_s;
@@ -159,8 +149,7 @@ double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
   Incrementer incrementer(each.facts);
   Increment increment;
   ChainOutput out;
-  std::mt19937_64 engine(seed);
-  std::normal_distribution<double> noise(0.0, 1e-4);
+  test::Noise noise(seed, 1e-4);
   double apart_rad = 0.0;
   for (int i = 0; i < 20'000; ++i) {
     const double t = i * kPeriod_s - 3.0;
@@ -168,7 +157,7 @@ double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
     reading.sequence = static_cast<std::uint32_t>(i % 128);
     reading.has_sequence = true;
     reading.valid_axes = 1;
-    reading.value[0] = noise(engine) + (t < 0.0 ? 0.0 : 1.7 * (t < 0.5 ? 1.0 : std::exp((0.5 - t) / 0.4)));
+    reading.value[0] = noise() + (t < 0.0 ? 0.0 : 1.7 * (t < 0.5 ? 1.0 : std::exp((0.5 - t) / 0.4)));
     incrementer.next(reading, increment);
     if (i == at) chain.swap(std::make_unique<ChainParts>(each));
     chain.process(increment, out);

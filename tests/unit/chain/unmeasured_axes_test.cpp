@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the chain makes of axes that are not measured: invalid samples, values that repeat, none at all.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -91,8 +81,7 @@ TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
   ChainSettings with = plain, learning = plain;
   with.model = learning.model = linear_in("accel_x_mps2", 0.0, {"coefficient", 1e-6, 1e-8, "rad/s/(m/s^2)"});
   learning.filter = FilterChoice{};
-  std::mt19937_64 engine(9);
-  std::normal_distribution<double> normal;
+  test::Noise normal(9);
   for (const SensorKind kind : {SensorKind::rate, SensorKind::delta_angle, SensorKind::angle})
     for (ChainSettings* const each : {&plain, &with, &learning}) {
       each->facts.kind = kind;
@@ -109,11 +98,11 @@ TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
         reading.device_time_ns = std::int64_t{1'000'000} * i + (i % 7) * 1000;
         reading.valid_axes = 1;
         reading.fresh_channels = 1;
-        reading.channel[0] = 0.1 * normal(engine);
+        reading.channel[0] = 0.1 * normal();
         const int at = i % 700;  // a fault returns
         const bool stands = i >= 400 && (at >= 400 || at < 300);
         const double scale = kind == SensorKind::rate ? 1.0 : kPeriod_s;
-        reading.value[0] = scale * (stands ? 0.1 : 0.1 + 1e-4 * normal(engine));
+        reading.value[0] = scale * (stands ? 0.1 : 0.1 + 1e-4 * normal());
         incrementer.next(reading, increment);
         chain.process(increment, out);
         const bool stuck = (out.estimate.flags & kStuck) != 0;
@@ -243,8 +232,7 @@ ChainSettings unlike(bool known, const Axes& walk) {
 Axes normalised(const ChainSettings& settings, const Axes& steps, int from, int to, unsigned seeds) {
   Axes sums{};
   for (unsigned seed = 1; seed <= seeds; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     SignalChain chain(std::make_unique<ChainParts>(settings));
     Increment in;
     ChainOutput out;
@@ -255,8 +243,8 @@ Axes normalised(const ChainSettings& settings, const Axes& steps, int from, int 
       in.valid_axes = 7;
       in.samples = 1;
       for (std::size_t a = 0; a < 3; ++a) {
-        walk[a] += std::sqrt(steps[a]) * normal(random);
-        in.rate_radps[a] = walk[a] + kSigma[a] * normal(random);
+        walk[a] += std::sqrt(steps[a]) * normal();
+        in.rate_radps[a] = walk[a] + kSigma[a] * normal();
         in.covered_s[a] = kPeriod;
       }
       chain.process(in, out);

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/compare/compare.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "filters/compare/figures.h"
+#include "tests/unit/test.h"
 
 namespace {
 
 std::vector<double> noise(unsigned seed, std::size_t n) {
-  std::mt19937_64 engine(seed);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(seed);
   std::vector<double> out(n);
-  for (double& v : out) v = normal(engine);
+  for (double& v : out) v = normal();
   return out;
 }
 

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/system/shell_word.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdio>
-
+#include "tests/unit/test.h"
 #include "tools/ifog/console/progress.h"
 
 namespace {

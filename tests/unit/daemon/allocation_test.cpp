@@ -4,11 +4,7 @@
 //
 // LCM is multicast: the program moves into a network namespace of its own first, so that nothing leaves the
 // machine.
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <chrono>
-#include <thread>
 
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
@@ -17,7 +13,7 @@
 #include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/malloc_counter.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

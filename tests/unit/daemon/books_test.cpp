@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever happens, the books balance at every look, and the published angle is what the intact frames say.
 #include "daemon/health/books.h"
-
-#include <gtest/gtest.h>
-
 #include "tests/unit/daemon/faults/random_faults.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -2,10 +2,8 @@
 // What is said of a configuration that is refused; nothing of a good one.
 #pragma once
 
-#include <string>
-
 #include "daemon/config/config.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/config.h"
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
-#include <string>
-
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/config_complaint.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -161,7 +152,7 @@ TEST(Config, NamesWhereAndWhat) {
            {"[daemon]\nlog_level = \"loud\"\n", "9: daemon.log_level = 'loud': "}}) {
     const std::string said = complaint(kGood + extra);
     EXPECT_TRUE(said.starts_with(std::string("f.toml:") + place)) << extra << said;
-    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    EXPECT_FALSE(test::has(said, "\n")) << said;
   }
 }
 
@@ -251,14 +242,14 @@ TEST(Config, AComplaintIsOneLineWhateverTheFileHolds) {
     config.append("[sensor.realtime]\nspin = true\n[sensor.filter]\n").append(text);
     const std::string all = complaint(config);
     EXPECT_EQ(all.rfind("f.toml:1", 0), 0U) << all;
-    EXPECT_EQ(all.find('\n'), std::string::npos) << all;
+    EXPECT_FALSE(test::has(all, "\n")) << all;
   }
 }
 
 TEST(Config, AMissingFileIsOneLine) {
   const std::string line = test::refusal([] { read_config("/nonexistent/ifogd.toml"); });
-  EXPECT_NE(line.find("/nonexistent/ifogd.toml"), std::string::npos);
-  EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_TRUE(test::has(line, "/nonexistent/ifogd.toml"));
+  EXPECT_FALSE(test::has(line, "\n"));
 }
 
 // As the reference has them; without, everything that a sensor can measure passes.

@@ -2,10 +2,8 @@
 // A delivery as a transport brings it.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "drivers/transport/transport.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -3,14 +3,9 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <string_view>
-
 #include "tests/unit/daemon/daemon_process.h"
 #include "tests/unit/daemon/kvh_frames.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline/increment_queue.h"
-
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <thread>
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

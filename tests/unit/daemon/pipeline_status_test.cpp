@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a running pipeline says of itself.
 #include "daemon/housekeeping/status_report.h"
-
-#include <gtest/gtest.h>
-
-#include <random>
-
 #include "tests/unit/daemon/rig.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -17,9 +13,8 @@ using namespace std::chrono_literals;
 TEST(PipelineStatus, CountersGoOnOverAReload) {
   constexpr int kCount = 4000, kHalf = 2000;
   // In noise as the filter is configured for, or it finds that there is none and that everything is motion.
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal(0.0, 1e-4);
-  const auto spikes = [&](int n) { return normal(random) + (n % 250 == 249 ? 0.5 : 0.0); };
+  test::Noise normal(3, 1e-4);
+  const auto spikes = [&](int n) { return normal() + (n % 250 == 249 ? 0.5 : 0.0); };
   Rig rig(frames(kCount, spikes), kFrame, true);
   rig.transport->allowed_ = kHalf * kFrame;
   rig.transport->stays_open_ = true;
@@ -37,7 +32,7 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   EXPECT_EQ(after.filter_resets, 1);
   EXPECT_EQ(after.gated, before.gated);
   EXPECT_GE(after.floor_hits, before.floor_hits);
-  EXPECT_EQ(report.moved().find("+-"), std::string::npos) << report.moved();
+  EXPECT_FALSE(test::has(report.moved(), "+-")) << report.moved();
   rig.transport->allowed_ = ~std::size_t{0};
   EXPECT_GE(look(kCount).gated, kCount / 250);
   rig.pipeline->stop();

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole pipelines, from bytes to encoded messages.
-#include "daemon/pipeline/pipeline.h"
-
-#include <gtest/gtest.h>
 #include <bot_core/kvh_raw_imu_batch_t.hpp>
 #include <ifog/imu_t.hpp>
 
-#include <limits>
-#include <map>
-
 #include "daemon/pipeline/assemble.h"
+#include "daemon/pipeline/pipeline.h"
 #include "daemon/publish/inertial_encoder.h"
 #include "tests/unit/daemon/rig.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

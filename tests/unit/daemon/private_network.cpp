@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/daemon/private_network.h"
-
 #include <arpa/inet.h>
 #include <net/if.h>
 #include <net/route.h>
@@ -9,8 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
+#include "tests/unit/daemon/private_network.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

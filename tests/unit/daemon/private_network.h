@@ -3,7 +3,7 @@
 // machine.
 #pragma once
 
-#include <string>
+#include "tests/unit/test.h"
 
 namespace ifog {
 

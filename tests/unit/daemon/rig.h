@@ -4,20 +4,12 @@
 #pragma once
 
 #include <ifog/decode.h>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <functional>
 #include <ifog/rate_t.hpp>
-#include <memory>
-#include <mutex>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "daemon/pipeline/pipeline.h"
 #include "tests/unit/daemon/chain_behind.h"
 #include "tests/unit/daemon/kvh_frames.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -8,14 +8,9 @@
 #include <poll.h>
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <map>
-#include <memory>
-
 #include "tests/unit/daemon/daemon_process.h"
 #include "tests/unit/daemon/kvh_frames.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

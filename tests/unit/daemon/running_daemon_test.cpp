@@ -2,12 +2,9 @@
 // The daemon while it runs: what reloading, silence and a lost log do to it.
 #include <sys/file.h>
 
-#include <chrono>
-#include <random>
-#include <thread>
-
 #include "tests/unit/daemon/running_daemon.h"
 #include "tests/unit/messages.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -140,28 +137,6 @@ TEST_F(RunningDaemon, ChannelsFromAFileAndFromLcmReachTheSensor) {
   EXPECT_EQ(end(), 0) << said();
 }
 
-// kB that the daemon holds locked with so many sensors; 0 where it may not lock any.
-TEST_F(RunningDaemon, ASensorHoldsFewMegabytesOfLockedMemory) {
-  const auto locked_kB = [&](int sensors) {
-    std::string config = "[daemon]\nlock_memory = true\n";
-    for (int n = 0; n < sensors; ++n) config += sensor("s" + std::to_string(n));
-    write("ifogd.toml", config);
-    const std::string last = "IFOG_S" + std::to_string(sensors - 1) + "_STATUS";
-    const int before = listener_->heard[last];
-    start();
-    EXPECT_TRUE(await([&] { return listener_->heard[last] > before; })) << said();
-    std::ifstream status("/proc/" + std::to_string(child_) + "/status");
-    long kB = 0;
-    for (std::string line; std::getline(status, line);)
-      if (line.starts_with("VmLck:")) kB = std::stol(line.substr(6));
-    EXPECT_EQ(end(), 0);
-    return kB;
-  };
-  const long one = locked_kB(1);
-  if (one == 0) GTEST_SKIP() << "may not lock memory: " << said();
-  EXPECT_LT((locked_kB(9) - one) / 8, 4096);
-}
-
 TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
   write("ifogd.toml",
         kDaemon + sensor("nose") +
@@ -203,7 +178,7 @@ TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
   EXPECT_EQ(times_said("noise as learned until"), 0) << said();
   const double first = samples();
   EXPECT_GE(first, 4096.0) << kept();
-  EXPECT_NE(kept().find("learned = \"20"), std::string::npos) << kept();
+  EXPECT_TRUE(test::has(kept(), "learned = \"20"));
 
   ASSERT_EQ(run_to_the_end(""), 0) << said();
   EXPECT_EQ(times_said("noise from start-up data"), 0) << said();

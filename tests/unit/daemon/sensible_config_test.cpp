@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Configurations whose every key is well formed and that still cannot work: names, numbers, pairs of sensors.
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <string>
 
 #include "daemon/config/config.h"
 #include "daemon/config/lcm_url.h"
 #include "tests/unit/daemon/config_complaint.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -65,7 +58,7 @@ TEST(SensibleConfig, NumbersThatLetNothingThroughAreRefused) {
             "9: sensor.record.bytes = 5: "}}) {
     const std::string said = complaint(text);
     EXPECT_TRUE(said.starts_with(std::string("f.toml:") + place)) << text << said;
-    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    EXPECT_FALSE(test::has(said, "\n")) << said;
   }
   EXPECT_EQ(complaint(coil + "period_s = 60\nmax_age_s = 0\n"), "");
   const std::string twice =
@@ -163,9 +156,8 @@ TEST(SensibleConfig, StandardInputIsOneSource) {
   dup2(ends[0], STDIN_FILENO);
   const auto path = [](const std::string& name) { return "type = \"file\"\npath = \"" + name + "\"\n"; };
   for (const char* const name : {"/dev/stdin", "/proc/self/fd/0", "-"})
-    EXPECT_NE(complaint(sensor("a", path("-")) + sensor("b", path(name)))
-                  .find(shared("path", "'" + std::string(name) + "'")),
-              std::string::npos)
+    EXPECT_TRUE(test::has(complaint(sensor("a", path("-")) + sensor("b", path(name))),
+                          shared("path", "'" + std::string(name) + "'")))
         << name;
   dup2(before, STDIN_FILENO);
   for (const int end : {before, ends[0], ends[1]}) close(end);
@@ -193,8 +185,8 @@ TEST(SensibleConfig, ARateDoesNotComeBackAsAChannelOfItsOwn) {
   EXPECT_EQ(complaint(sensor("a", kFile, from("IFOG_B", "denoised[0]")) + sensor("b", kFile)), "");
   const std::string mutual = complaint(sensor("a", kFile, from("IFOG_B", "denoised[0]")) +
                                        sensor("b", kFile, from("IFOG_A", "compensated[0]")));
-  EXPECT_NE(mutual.find("the rate of sensor 'a' would come back"), std::string::npos) << mutual;
-  EXPECT_NE(mutual.find("the rate of sensor 'b' would come back"), std::string::npos) << mutual;
+  EXPECT_TRUE(test::has(mutual, "the rate of sensor 'a' would come back"));
+  EXPECT_TRUE(test::has(mutual, "the rate of sensor 'b' would come back"));
 }
 
 // A recording of an earlier version is read, whatever the daemon would now say of its configuration.

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A system that has no thread left. This program's pthread_create stands before the system's.
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 #include <pthread.h>
 
-#include <atomic>
-#include <cerrno>
-#include <chrono>
-#include <climits>
-#include <filesystem>
-#include <iterator>
-#include <system_error>
-#include <thread>
-
 #include "tests/unit/daemon/rig.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What comes first: bias and scale factor against a reference, noisy or of few points; rotation that stays in
 // the rate; coefficients that no gyro has. The truth is what the captures are made of.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <string>
-#include <utility>
-
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/blocks.h"
@@ -16,7 +8,7 @@
 #include "filters/effects/meaning.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -32,21 +24,73 @@ struct Rows {
   }
 };
 
+// A GNSS receiver or an odometer is read once a second and held until then: between its readings the reference is not of
+// its time. The error bar holds: three of them.
+TEST(Basics, AReferenceThatIsHeldIsUsedAtItsReadings) {
+  constexpr double kScale = 3e-3;
+  test::Noise normal(21);
+  Rows rows;
+  double slow = 0.0, truth = 0.0;
+  for (int i = 0; i < 60'000; ++i) {
+    slow += 0.02 * (2.0 * normal() - slow);
+    truth += 0.02 * (slow - truth);
+    rows.time.push_back(0.1 * i);
+    rows.reference.push_back(i % 10 == 0 ? truth : rows.reference.back());
+    rows.rate.push_back((1.0 + kScale) * truth + 7e-4 * normal());
+  }
+  const Diagnosis found = diagnose({rows.record()}, {});
+  const Effect* scale = effect_of(found, "linear");
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(parameter(*scale, "coefficient"), kScale, 3.0 * scale->parameters[0].std_error);
+  EXPECT_LT(scale->parameters[0].std_error, 0.1 * kScale);
+  EXPECT_EQ(found.effects.size(), 1U);
+  EXPECT_TRUE(std::ranges::any_of(found.remarks, [](const std::string& said) {
+    return test::has(said, "is read in every 10 samples and held");
+  }));
+}
+
+// A thermometer that is logged every ten seconds in tenths of a degree, next to an effect of the temperature and of its
+// rate (Shupe): the stairs are no jumps of the bias. One in whole degrees that changes when it does is not held.
+TEST(Basics, StairsOfAThermometerAreNoEffects) {
+  for (const double digit : {0.1, 1.0}) {
+    test::Noise normal(22);
+    Rows rows;
+    double oven = 25.0, air = 25.0, housing = 25.0, coil = 25.0, before = 25.0;
+    for (int i = 0; i < 60'000; ++i) {
+      if (i % 8'000 == 0) oven = 15.0 + 30.0 * std::abs(std::sin(1.7 * i));
+      air += 1e-3 * (oven - air);
+      housing += 1e-3 * (air - housing);
+      coil += 3e-3 * (housing - coil);
+      const double rate = (coil - std::exchange(before, coil)) / 0.1;
+      rows.time.push_back(0.1 * i);
+      const bool read = digit == 1.0 || i % 100 == 0;
+      rows.channel.push_back(read ? digit * std::round(housing / digit) : rows.channel.back());
+      rows.rate.push_back(1e-4 * (housing - 25.0) + 2e-2 * rate + 3e-4 * normal());
+    }
+    const Diagnosis found = diagnose({rows.record()}, {});
+    EXPECT_EQ(effect_of(found, "step"), nullptr) << digit;
+    const double left = found.after.at("rms_10s_radps") / found.before.at("rms_10s_radps");
+    EXPECT_LT(left, digit == 0.1 ? 0.2 : 0.7) << digit;
+    EXPECT_EQ(std::ranges::any_of(found.remarks,
+                                  [](const std::string& said) { return test::has(said, "and held"); }),
+              digit == 0.1);
+  }
+}
+
 // Motion up to some hertz and a reference differentiated from noisy angles. Least squares of means of a second is
 // the oracle.
 TEST(Basics, AreFoundInBroadbandMotion) {
   for (const double error : {0.0, -0.01, -0.14, -2.0}) {
-    std::mt19937_64 random(11);
-    std::normal_distribution<double> normal;
+    test::Noise normal(11);
     Rows rows;
     double slow = 0.0, truth = 0.0, before = 0.0;
     for (int i = 0; i < 30000; ++i) {
-      slow += 0.05 * (8.0 * normal(random) - slow);
+      slow += 0.05 * (8.0 * normal() - slow);
       truth += 0.05 * (slow - truth);
-      const double angle = 4e-4 * normal(random);
+      const double angle = 4e-4 * normal();
       rows.time.push_back(0.005 * i);
       rows.reference.push_back(truth + (angle - std::exchange(before, angle)) / 0.005);
-      rows.rate.push_back((1.0 + error) * truth + 8e-3 + 5e-3 * normal(random));
+      rows.rate.push_back((1.0 + error) * truth + 8e-3 + 5e-3 * normal());
     }
     double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, n = 0.0;
     for (std::size_t i = 0; i < rows.time.size(); i += 200, n += 1.0) {
@@ -59,7 +103,7 @@ TEST(Basics, AreFoundInBroadbandMotion) {
     }
     if (error == -2.0) {
       const std::string said = test::refusal([&] { diagnose({rows.record()}, {}); });
-      EXPECT_NE(said.find("times reference_rate_radps, expected about 1"), std::string::npos) << said;
+      EXPECT_TRUE(test::has(said, "times reference_rate_radps, expected about 1"));
       continue;
     }
     const double slope = (xy - x * y / n) / (xx - x * x / n);
@@ -75,14 +119,13 @@ TEST(Basics, AreFoundInBroadbandMotion) {
 // The coefficient of a temperature that hardly changed says little of the bias at 25 degC, but the mean where the
 // record was is known and corrected.
 TEST(Basics, AMeanFarFromTheReferenceTemperatureIsCorrected) {
-  std::mt19937_64 random(12);
-  std::normal_distribution<double> normal;
+  test::Noise normal(12);
   Rows rows;
   for (int i = 0; i < 20000; ++i) {
     rows.time.push_back(0.1 * i);
     rows.channel.push_back(50.0 + 1.5 * std::sin(i / 1500.0));
     rows.reference.push_back(0.0);
-    rows.rate.push_back(6e-5 + 2e-6 * (rows.channel.back() - 50.0) + 2e-5 * normal(random));
+    rows.rate.push_back(6e-5 + 2e-6 * (rows.channel.back() - 50.0) + 2e-5 * normal());
   }
   const Diagnosis found = diagnose({rows.record()}, {});
   EXPECT_NE(effect_of(found, "linear", "temperature_degC"), nullptr);
@@ -117,13 +160,12 @@ TEST(Basics, OneEventIsNoScaleFactor) {
 
 // Thirteen points of a calibration.
 TEST(Basics, ARateTableOfAFewPointsIsAccepted) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
+  test::Noise normal(5);
   Rows rows;
   for (int i = -6; i <= 6; ++i) {
     rows.time.push_back(20.0 * (i + 6));
     rows.reference.push_back(0.1 * i);
-    rows.rate.push_back(0.1 * i * 1.02 + 1e-4 * normal(random));
+    rows.rate.push_back(0.1 * i * 1.02 + 1e-4 * normal());
   }
   const Diagnosis found = diagnose({rows.record()}, {});
   const Effect* scale = effect_of(found, "linear");
@@ -138,16 +180,15 @@ TEST(Motion, ExplainsNothingWithoutAReference) {
   for (const char* name :
        {"sea_mps", "accel_x_mps2", "mount_rad", "deck_radps", "wheel_rpm", "motor_A", "thrust_N",
         "rudder_percent", "steer_cmd", "tension_kN", "wind_mps", "brake_pressure_hPa"}) {
-    std::mt19937_64 random(7);
-    std::normal_distribution<double> normal;
+    test::Noise normal(7);
     Rows rows;
     rows.name = name;
     double walk = 0.0;
     for (int i = 0; i < 4000; ++i) {
-      const double swing = std::sin(0.9 * i + (walk += 0.1 * normal(random)));
+      const double swing = std::sin(0.9 * i + (walk += 0.1 * normal()));
       rows.time.push_back(0.5 * i);
-      rows.rate.push_back(1e-6 * normal(random) + 5e-6 * swing);
-      rows.channel.push_back(swing + 0.02 * normal(random));
+      rows.rate.push_back(1e-6 * normal() + 5e-6 * swing);
+      rows.channel.push_back(swing + 0.02 * normal());
     }
     const Diagnosis found = diagnose({rows.record()}, {});
     for (const FoundEffect& each : found.effects) EXPECT_EQ(each.effect.channel, "") << name;
@@ -164,19 +205,18 @@ TEST(Motion, ExplainsNothingWithoutAReference) {
 
 // Broad-band noise that comes and goes over minutes; `size` of its quick part's mean square is in the rate.
 Rows shaken(std::uint64_t seed, double size) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   Rows rows;
   rows.name = "accel_x_mps2";
   double level = 0.0, shake = 0.0, slow = 0.0, power = 0.0;
   for (int i = 0; i < 30000; ++i) {
-    level += -level / 3000.0 + std::sqrt(2.0 / 3000.0) * normal(random);
-    shake += 0.3 * (2.0 * std::exp(0.5 * level) * normal(random) - shake);
+    level += -level / 3000.0 + std::sqrt(2.0 / 3000.0) * normal();
+    shake += 0.3 * (2.0 * std::exp(0.5 * level) * normal() - shake);
     slow += 0.5 * (shake - slow);
     power += ((shake - slow) * (shake - slow) - power) / 25.0;
     rows.time.push_back(0.02 * i);
     rows.channel.push_back(shake);
-    rows.rate.push_back(1e-6 * normal(random) + size * power);
+    rows.rate.push_back(1e-6 * normal() + size * power);
   }
   return rows;
 }
@@ -222,15 +262,14 @@ TEST(Motion, IsToldByUnitAndName) {
 
 // An acceleration that drifts as the bias does, by 0.5 °/s for 1 m/s^2 where makers specify 0.005.
 TEST(Proxies, AreShownAndNotWritten) {
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> normal;
+  test::Noise normal(9);
   Rows rows;
   rows.name = "accel_x_mps2";
   for (int i = 0; i < 5000; ++i) {
     const double drift = 0.1 * std::sin(i / 400.0);
     rows.time.push_back(i);
     rows.channel.push_back(drift);
-    rows.rate.push_back(1e-3 * normal(random) + 8.7e-3 * drift);
+    rows.rate.push_back(1e-3 * normal() + 8.7e-3 * drift);
   }
   const Diagnosis found = diagnose({rows.record()}, {});
   const Effect* proxy = effect_of(found, "linear");

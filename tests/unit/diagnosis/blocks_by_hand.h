@@ -2,12 +2,8 @@
 // Block data for tests of one room at a time, made without cut_to_blocks().
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "filters/diagnosis/regression/candidates.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 
@@ -39,14 +35,13 @@ inline FineChannel channel_of(const std::string& name, const std::vector<double>
 
 // Unit white noise in the error and one slow temperature.
 inline BlockData white_with_temperature(std::size_t n, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   BlockData data;
   data.grid = grid_of({n});
   std::vector<double> temperature;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = static_cast<double>(i);
-    data.grid.error[static_cast<Eigen::Index>(i)] = normal(random);
+    data.grid.error[static_cast<Eigen::Index>(i)] = normal();
     temperature.push_back(25.0 + 8.0 * std::sin(2.0 * M_PI * t / 700.0) +
                           3.0 * std::sin(2.0 * M_PI * t / 130.0));
   }

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/channels/derived_channels.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/form.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -133,8 +126,7 @@ TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
 // square of the angles.
 TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   constexpr std::size_t n = 20000;
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
+  test::Noise normal(1);
   std::vector<double> time;
   std::array<std::vector<double>, 3> truth, measured;
   const double seen[3][3] = {{1e-4, 2e-3, 1.8e-3}, {-1.4e-3, 0.0, -1.9e-3}, {1.2e-3, 1.9e-3, -2e-4}};
@@ -143,7 +135,7 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
     for (std::size_t a = 0; a < 3; ++a)
       truth[a].push_back(0.5 * std::sin(time.back() * (0.3 + 0.17 * static_cast<double>(a))));
     for (std::size_t a = 0; a < 3; ++a) {
-      double rate = truth[a][i] + 1e-6 * normal(random);
+      double rate = truth[a][i] + 1e-6 * normal();
       for (std::size_t b = 0; b < 3; ++b) rate += seen[a][b] * truth[b][i];
       measured[a].push_back(rate);
     }
@@ -168,23 +160,22 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   EXPECT_EQ(found.effects.size(), 3U);
 }
 
-// Two axes that cone, all references late by a tenth of a second: neither axis is given a part of the other.
+// Two axes that swing, all references late by a tenth of a second: neither axis is given a part of the other.
 TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
   constexpr std::size_t n = 20000;
-  std::mt19937_64 random(2);
-  std::normal_distribution<double> normal;
+  test::Noise normal(2);
   const auto x = [](double t) { return 0.4 * std::sin(1.3 * t); };
-  const auto y = [](double t) { return 0.4 * std::cos(1.3 * t) + 0.2 * std::sin(0.31 * t); };
+  const auto y = [](double t) { return 0.4 * std::cos(1.1 * t) + 0.2 * std::sin(0.31 * t); };
   std::vector<double> time, x_rate, y_rate, x_late, y_late;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = 0.02 * static_cast<double>(i);
     time.push_back(t);
-    x_rate.push_back(x(t) * (1.0 + 1e-4) + 2e-3 * y(t) + 1e-6 * normal(random));
-    y_rate.push_back(y(t) + 1e-6 * normal(random));
+    x_rate.push_back(x(t) * (1.0 + 1e-4) + 2e-3 * y(t) + 1e-6 * normal());
+    y_rate.push_back(y(t) + 1e-6 * normal());
     x_late.push_back(x(t - 0.1));
     y_late.push_back(y(t - 0.1));
   }
-  Record record = made_record("cone", time, x_rate, {}, x_late);
+  Record record = made_record("swing", time, x_rate, {}, x_late);
   record.other_axes = {{"rate_y_radps", y_rate}};
   record.other_references = {y_late};
   const Diagnosis found = diagnose({record}, {});
@@ -197,69 +188,6 @@ TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
     }
   }
   EXPECT_GE(found.effects.size(), 2U);
-}
-
-// A bias that is periodic in temperature is reported as such, whatever its period, and not approximated by
-// polynomials, which diverge outside the range.
-
-constexpr std::size_t kSamples = 6000;
-
-// A chamber that goes up and down twice between 10 and 30 degC; a white rate and one that walks.
-struct Chamber {
-  std::vector<double> time, rate, temperature, supply;
-
-  explicit Chamber(std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    double walk = 0.0;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const double t = static_cast<double>(i);
-      time.push_back(t);
-      temperature.push_back(20.0 + 8.5 * std::sin(2.0 * M_PI * t / 3100.0) +
-                            1.5 * std::sin(2.0 * M_PI * t / 410.0) + 0.02 * normal(random));
-      supply.push_back(12.0 + 0.05 * std::sin(2.0 * M_PI * t / 700.0) + 0.002 * normal(random));
-      walk += 2e-9 * normal(random);
-      rate.push_back(1e-6 * normal(random) + walk);
-    }
-  }
-  [[nodiscard]] Diagnosis diagnosed() const {
-    return diagnose(
-        {made_record("chamber", time, rate, {{"temperature_degC", temperature}, {"supply_V", supply}})}, {});
-  }
-};
-
-TEST(Fringes, AreToldWithTheirPeriodAndPhase) {
-  for (const double period : {2.0, 5.3, 13.0}) {
-    Chamber chamber(3);
-    for (std::size_t i = 0; i < kSamples; ++i)
-      chamber.rate[i] += 4e-7 * std::cos(2.0 * M_PI * chamber.temperature[i] / period - 0.9);
-    const Diagnosis found = chamber.diagnosed();
-    EXPECT_EQ(found.effects.size(), 2U) << period;
-    // What the model says of each temperature between 10 and 30 degC, against the law: the largest difference
-    // but for a constant.
-    double least = 1.0, most = -1.0;
-    for (double degC = 10.0; degC <= 30.0; degC += 0.05) {
-      double told = -4e-7 * std::cos(2.0 * M_PI * degC / period - 0.9);
-      for (const FoundEffect& each : found.effects) {
-        const double turns = (degC - each.effect.reference) / each.effect.period;
-        EXPECT_NEAR(each.effect.period, period, 0.02 * period);
-        const double phase = each.effect.form == "sine" ? 0.25 : 0.0;
-        told += each.effect.parameters.front().value * std::cos(2.0 * M_PI * (turns - phase));
-      }
-      least = std::min(least, told);
-      most = std::max(most, told);
-    }
-    EXPECT_LT(most - least, 0.25 * 4e-7) << period;
-    EXPECT_NE(found.effects[0].effect.meaning.find("fringe"), std::string::npos);
-  }
-}
-
-TEST(Fringes, AreNotMadeOfNoise) {
-  for (std::uint64_t seed = 20; seed < 32; ++seed) {
-    const Diagnosis found = Chamber(seed).diagnosed();
-    EXPECT_EQ(effect_of(found, "cosine"), nullptr) << seed;
-    EXPECT_EQ(effect_of(found, "sine"), nullptr) << seed;
-  }
 }
 
 }  // namespace

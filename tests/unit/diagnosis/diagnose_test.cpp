@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/diagnose.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "filters/diagnosis/report/prediction.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

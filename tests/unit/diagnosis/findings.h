@@ -2,19 +2,9 @@
 // What a diagnosis found: its effects looked up and in words, and that a correction leaves rotation as it is.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <complex>
-#include <cstdio>
-#include <initializer_list>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "filters/diagnosis/diagnose.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

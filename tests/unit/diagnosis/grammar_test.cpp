@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kinds of effects from the physics of the instrument, made by their laws and found by the diagnosis.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/regression/candidates.h"
@@ -14,6 +7,7 @@
 #include "filters/effects/form.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -178,7 +172,7 @@ TEST(Grammar, MisalignmentIsTracedToTheOtherAxis) {
   const Effect* effect = effect_of(found, "linear", "rate_y_radps");
   expect_coefficient(effect, 2e-5);
   EXPECT_EQ(effect->parameters[0].unit, "rad");
-  EXPECT_NE(effect->meaning.find("misalignment"), std::string::npos);
+  EXPECT_TRUE(test::has(effect->meaning, "misalignment"));
 }
 
 TEST(Grammar, AnotherScaleFactorBackwardsIsNoParabola) {
@@ -269,7 +263,7 @@ TEST(Grammar, AScaleFactorOverTheCoilsTemperatureLags) {
   EXPECT_EQ(effect.with_form, "lagged");
   EXPECT_EQ(effect.with_channel, "temperature_degC");
   EXPECT_NEAR(parameter(effect, "lag_s"), 180.0, 18.0);
-  EXPECT_NE(effect.meaning.find("coil"), std::string::npos);
+  EXPECT_TRUE(test::has(effect.meaning, "coil"));
   // What is written takes it away.
   EXPECT_LT(found.after.at("rms_10s_radps"), 0.3 * found.before.at("rms_10s_radps"));
 }

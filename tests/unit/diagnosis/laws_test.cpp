@@ -2,20 +2,13 @@
 // Laws of a gyro that polynomials of one channel are not, made here by their equations and found: a bias that
 // ages, one that turns over, a scale factor that is right at a supply nobody knows, an answer through the
 // temperature. What is written is run over a second capture, whose truth is the same equation.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <random>
-#include <span>
-#include <vector>
-
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/effects/form.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -169,14 +162,13 @@ TEST(Laws, AnAnswerThroughTheTemperatureNeedsNoEffectOfItsOwnFirst) {
 // Two hours at 1 Hz beside a thermometer; noise 1e-6 rad/s.
 Diagnosis diagnosis_of(const std::function<double(double)>& temperature,
                        const std::function<double(double t, double celsius)>& error, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   std::vector<double> time, rate, celsius;
   for (int i = 0; i < 7200; ++i) {
     const double t = i;
     time.push_back(t);
-    celsius.push_back(temperature(t) + 0.004 * normal(random));
-    rate.push_back(error(t, temperature(t)) + 1e-6 * normal(random));
+    celsius.push_back(temperature(t) + 0.004 * normal());
+    rate.push_back(error(t, temperature(t)) + 1e-6 * normal());
   }
   return diagnose({made_record("two hours", time, rate, {{"temperature_degC", celsius}})}, {});
 }
@@ -196,7 +188,7 @@ TEST(WarmUp, WhatTheTemperatureExplainsIsTheTemperatures) {
                      [](double, double celsius) { return 2e-8 * std::pow(celsius - 31.0, 2); }, seed);
     ASSERT_FALSE(found.effects.empty()) << seed;
     for (const std::string& name : named(found))
-      EXPECT_NE(name.find(" of temperature_degC"), std::string::npos) << seed << ' ' << name;
+      EXPECT_TRUE(test::has(name, " of temperature_degC")) << seed << ' ' << name;
   }
 }
 
@@ -214,11 +206,10 @@ TEST(WarmUp, WhatNoChannelExplainsIsAWarmUp) {
 struct Settling {
   std::vector<double> time, rate;
   explicit Settling(double on_s, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     for (int i = 0; i < 7200; ++i) {
       time.push_back(i);
-      rate.push_back(1e-6 * std::exp(-(on_s + i) / 500.0) + 1e-7 * normal(random));
+      rate.push_back(1e-6 * std::exp(-(on_s + i) / 500.0) + 1e-7 * normal());
     }
   }
   [[nodiscard]] Record on_for(double on_s) const {

@@ -2,16 +2,9 @@
 // What a test makes a capture of.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "filters/diagnosis/record.h"
 #include "filters/random/philox.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Named effects measured on white noise, against ordinary least squares written out; and what is asked for
 // that is not there.
-#include "filters/diagnosis/measure.h"
-
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <numeric>
-#include <random>
-#include <stdexcept>
-#include <vector>
 
+#include "filters/diagnosis/measure.h"
 #include "filters/effects/form.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -24,8 +17,7 @@ constexpr double kNoise = 1e-6, kPerDegree = 2e-8, kPerVolt = 3e-7;
 struct Sensor {
   std::vector<double> time_s, rate, temperature, supply, still;
   explicit Sensor(std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double t = static_cast<double>(i);
       time_s.push_back(t);
@@ -33,7 +25,7 @@ struct Sensor {
       supply.push_back(12.0 + 0.3 * std::sin(2.0 * M_PI * t / 333.0));
       still.push_back(5.0);
       rate.push_back(4e-5 + kPerDegree * (temperature.back() - 25.0) + kPerVolt * (supply.back() - 12.0) +
-                     kNoise * normal(random));
+                     kNoise * normal());
     }
   }
   [[nodiscard]] Record record() const {

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The room `record`: what a capture is before anything is fitted to it.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-#include <stdexcept>
-#include <string>
-
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/figures.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -72,7 +64,7 @@ TEST(Blocks, TooFewOfThemAreSaid) {
     const std::string said =
         test::refusal([&] { static_cast<void>(cut_to_blocks({arrays->record()}, 100)); }, "was cut");
     for (const char* part : {samples, "at least 32", "--from", "empty cells"})
-      EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
+      EXPECT_TRUE(test::has(said, part)) << part << ": " << said;
   }
   EXPECT_THROW(static_cast<void>(cut_to_blocks({Arrays(20).record()}, 100)), std::invalid_argument);
 }
@@ -96,9 +88,8 @@ TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
 
 TEST(PreparedRecords, AreRepairedAndCutAndSayWhatWasDone) {
   Arrays arrays(4000);
-  std::mt19937_64 draw(11);
-  std::normal_distribution<double> normal;
-  for (double& rate : arrays.rate) rate = 1e-6 * normal(draw);
+  test::Noise normal(11);
+  for (double& rate : arrays.rate) rate = 1e-6 * normal();
   arrays.rate[500] = 1e-3;  // a knock
   for (std::size_t i = 0; i < 4000; ++i) arrays.temperature[i] = 25.0 + 1e-3 * static_cast<double>(i);
   arrays.temperature[1000] = 85.0;  // a thermometer's power-on value
@@ -112,16 +103,14 @@ TEST(PreparedRecords, AreRepairedAndCutAndSayWhatWasDone) {
   EXPECT_EQ(prepared.fitted.front().rate_radps.data(), whole.rate_radps.data());
   ASSERT_EQ(prepared.without_ramps.records.size(), 1U);
   ASSERT_EQ(prepared.whole.remarks.size(), 2U);
-  EXPECT_NE(prepared.whole.remarks[1].find("1 sample leaps away"), std::string::npos)
-      << prepared.whole.remarks[1];
-  EXPECT_NE(prepared.whole.remarks[0].find("temperature_degC leaps away"), std::string::npos);
+  EXPECT_TRUE(test::has(prepared.whole.remarks[1], "1 sample leaps away"));
+  EXPECT_TRUE(test::has(prepared.whole.remarks[0], "temperature_degC leaps away"));
 }
 
 TEST(PreparedRecords, NothingIsRepairedWhereNothingIsWrong) {
   Arrays arrays(400);
-  std::mt19937_64 draw(12);
-  std::normal_distribution<double> normal;
-  for (double& rate : arrays.rate) rate = 1e-6 * normal(draw);
+  test::Noise normal(12);
+  for (double& rate : arrays.rate) rate = 1e-6 * normal();
   const std::vector<Record> captures = {arrays.record()};
   const PreparedRecords prepared(captures);
   EXPECT_TRUE(prepared.whole.remarks.empty());
@@ -167,16 +156,14 @@ TEST(ChannelFaults, WhatAThermometerCannotHaveMeasuredIsInterpolated) {
   for (std::size_t i = 0; i < kSamples; ++i)
     EXPECT_NEAR(repaired.records[0].channels[0].values[i], warming(static_cast<double>(i)), 0.02) << i;
   ASSERT_EQ(repaired.remarks.size(), 1U);
-  EXPECT_NE(repaired.remarks[0].find("temperature_degC leaps away and back 2 time(s), for 53 sample(s)"),
-            std::string::npos)
-      << repaired.remarks[0];
+  EXPECT_TRUE(
+      test::has(repaired.remarks[0], "temperature_degC leaps away and back 2 time(s), for 53 sample(s)"));
 }
 
 // For a tenth of the record, which no excursion of a real vibration does: there is one number in it.
 TEST(ChannelFaults, ANumberInPlaceOfAVibrationIsNoneHoweverOftenItStands) {
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> noise(0.0, 4.0);
-  Logged logged([&](double) { return noise(random); });
+  test::Noise noise(9, 4.0);
+  Logged logged([&](double) { return noise(); });
   const std::vector<double> before = logged.channel;
   for (std::size_t start = 500; start < 3500; start += 600)
     for (std::size_t i = start; i < start + 55; ++i) logged.channel[i] = -999.0;
@@ -191,23 +178,22 @@ TEST(ChannelFaults, ANumberInPlaceOfAVibrationIsNoneHoweverOftenItStands) {
 }
 
 TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
+  test::Noise normal(5);
   const auto untouched = [](const Logged& logged, const char* name) {
     const OwnedRecords repaired = logged.repaired(name);
     EXPECT_TRUE(repaired.remarks.empty()) << name << ": " << repaired.remarks.front();
     EXPECT_EQ(repaired.records[0].channels[0].values.data(), logged.channel.data());
   };
   untouched(Logged(warming), "temperature_degC");
-  Logged blow([&](double) { return 9.81 + 0.01 * normal(random); });
+  Logged blow([&](double) { return 9.81 + 0.01 * normal(); });
   blow.channel[2000] = 10.0;  // nineteen of its standard deviations
   untouched(blow, "accel_z_mps2");
   untouched(Logged([](double t) { return t > 1000.0 && t < 1030.0 ? 1.0 : 0.0; }), "heater_on");
   // Full scale of the converter, for a fifth of the record; and a load that is off for longer than a minute
   // now and then.
-  untouched(Logged([&](double t) { return std::fmod(t, 800.0) < 640.0 ? 1.0 + 0.01 * normal(random) : 5.0; }),
+  untouched(Logged([&](double t) { return std::fmod(t, 800.0) < 640.0 ? 1.0 + 0.01 * normal() : 5.0; }),
             "valve_V");
-  untouched(Logged([&](double t) { return std::fmod(t, 1800.0) < 1730.0 ? 250.0 + normal(random) : 0.0; }),
+  untouched(Logged([&](double t) { return std::fmod(t, 1800.0) < 1730.0 ? 250.0 + normal() : 0.0; }),
             "heater_mA");
   // A supply that another consumer pulls down for good: a step, and no return.
   untouched(Logged([&](double t) { return (t < 2000.0 ? 12.0 : 11.2) + 0.01 * std::sin(t / 300.0); }),
@@ -237,10 +223,9 @@ TEST(ChannelFaults, EmptyCellsDoNotHideAGlitch) {
 }
 
 TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsBetweenItsNeighbours) {
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> normal;
+  test::Noise normal(6);
   Logged logged(warming);
-  for (double& rate : logged.rate) rate = 1e-6 * normal(random);
+  for (double& rate : logged.rate) rate = 1e-6 * normal();
   logged.rate[1700] = 5e-4;  // a hundred times what the others span
   const auto clean = logged.rate;
   const OwnedRecords repaired = logged.without_leaps_of_rate();
@@ -252,8 +237,7 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsBetweenItsNeighbours) {
       EXPECT_EQ(rate, clean[i]);
   }
   ASSERT_EQ(repaired.remarks.size(), 1U);
-  EXPECT_NE(repaired.remarks[0].find("1 sample leaps away and back"), std::string::npos)
-      << repaired.remarks[0];
+  EXPECT_TRUE(test::has(repaired.remarks[0], "1 sample leaps away and back"));
   // A knock of ten samples and one of twenty sigma are the sensor's own.
   logged.rate[1700] = 2e-5;
   for (std::size_t i = 3000; i < 3010; ++i) logged.rate[i] = 5e-4;

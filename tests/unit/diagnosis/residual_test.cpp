@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The room `residual`: what effects leave, as lines, as lines that move, and in words.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <random>
-#include <vector>
-
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/residual/lines.h"
@@ -15,6 +7,7 @@
 #include "filters/diagnosis/residual/unexplained.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -23,10 +16,9 @@ constexpr double kPeriod = 0.01;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> white(std::size_t n, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   std::vector<double> values(n);
-  for (double& value : values) value = normal(random);
+  for (double& value : values) value = normal();
   return values;
 }
 
@@ -137,7 +129,7 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   const Unexplained both = of(humming);
   EXPECT_EQ(both.kind, "line");
   EXPECT_EQ(both.means_s, kPeriod);
-  EXPECT_NE(both.hint.find("Besides, slow drift"), std::string::npos) << both.hint;
+  EXPECT_TRUE(test::has(both.hint, "Besides, slow drift"));
 }
 
 // Stamps that scatter about an even clock are set even; steps that are of different lengths stay.
@@ -172,7 +164,7 @@ TEST(EvenStamps, NoSampleOfAJitteringLogIsLostOnTheGrid) {
   const OwnedRecords timed = with_even_stamps(records);
   EXPECT_EQ(on_grid(timed.records[0]), kSamples);
   ASSERT_EQ(timed.remarks.size(), 1U);
-  EXPECT_NE(timed.remarks[0].find("sensor: the time stamps are up to"), std::string::npos);
+  EXPECT_TRUE(test::has(timed.remarks[0], "sensor: the time stamps are up to"));
   for (std::size_t i = 0; i < kSamples; ++i) EXPECT_NEAR(timed.records[0].time_s[i], time_s[i], 0.025) << i;
 }
 

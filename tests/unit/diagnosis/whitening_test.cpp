@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/regression/whitening.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -131,12 +126,11 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
 }
 
 TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> noise(0.0, 0.01);
+  test::Noise noise(1, 0.01);
   std::vector<double> truth, read;
   for (int i = 0; i < 8000; ++i) {
     truth.push_back(30.0 + 11.3 * std::sin(2.0 * M_PI * i / 5000.0));
-    read.push_back(std::round(truth.back() + noise(random)));
+    read.push_back(std::round(truth.back() + noise()));
   }
   const Reconstruction found = reconstruct(read);
   EXPECT_TRUE(found.smooth);
@@ -146,10 +140,9 @@ TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
 
 // RMS error of what is made of a channel that is read with a noise of 0.01.
 double left_of_noise(const std::vector<double>& truth, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0.0, 0.01);
+  test::Noise noise(seed, 0.01);
   std::vector<double> read;
-  for (const double each : truth) read.push_back(each + noise(random));
+  for (const double each : truth) read.push_back(each + noise());
   const Reconstruction found = reconstruct(read);
   EXPECT_TRUE(found.smooth);
   return rms_difference(found.values, truth);
@@ -167,16 +160,15 @@ TEST(Reconstruct, ARampBetweenSoaksKeepsItsKinks) {
 
 // A spline through jumps or jitter would be another channel.
 TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> noise;
+  test::Noise noise(3);
   std::vector<double> jumps, walk;
   double level = 0.0;
   double place = 0.0;
   for (int i = 0; i < 6000; ++i) {
-    if (i % 200 == 0) level = 5.0 * noise(random);
-    place += 0.05 * noise(random);
-    jumps.push_back(level + 0.002 * noise(random));
-    walk.push_back(place + 0.002 * noise(random));
+    if (i % 200 == 0) level = 5.0 * noise();
+    place += 0.05 * noise();
+    jumps.push_back(level + 0.002 * noise());
+    walk.push_back(place + 0.002 * noise());
   }
   for (const std::vector<double>& channel : {jumps, walk}) {
     const Reconstruction found = reconstruct(channel);
@@ -187,12 +179,11 @@ TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
 }
 
 TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> noise;
+  test::Noise noise(4);
   int moving = 0;
   for (int channel = 0; channel < 50; ++channel) {
     std::vector<double> read;
-    for (int i = 0; i < 5000; ++i) read.push_back(3.9 + 0.002 * noise(random));
+    for (int i = 0; i < 5000; ++i) read.push_back(3.9 + 0.002 * noise());
     moving += stands_still(read) ? 0 : 1;
   }
   EXPECT_EQ(moving, 0);

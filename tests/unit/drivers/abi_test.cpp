@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plugin interface as plugins built elsewhere know it: where every field lies. A change here breaks them,
 // so IFOG_DRIVER_ABI must grow with it, and this table with that.
-#include <gtest/gtest.h>
-
-#include <cstddef>
-
 #include "drivers/ifog/driver.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver that takes a CSV capture for a sensor: the same numbers as read_capture gives, from bytes in any
 // portions.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace {
 

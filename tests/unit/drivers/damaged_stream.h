@@ -3,15 +3,8 @@
 // intact one out of it, with its own last byte, however the stream is cut into portions.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <random>
-#include <span>
-#include <vector>
-
 #include "drivers/plugins/framing/frame_finder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

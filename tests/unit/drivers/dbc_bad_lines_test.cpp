@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // DBC files as they are found: what others read is read, a line that cannot be read costs what stands on it
 // and is named.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <stdexcept>
-#include <string>
-
 #include "drivers/dbc/codec.h"
 #include "drivers/dbc/database.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

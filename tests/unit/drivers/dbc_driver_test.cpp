@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver `dbc`: signals picked by options, samples gathered from several frames, nothing made of two
 // samples.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 #include "drivers/host/timeline_frame.h"
 #include "drivers/timeline/timeline.h"
 #include "tests/unit/drivers/dbc_frames.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -2,16 +2,8 @@
 // Frames of a bus, the samples that the driver `dbc` makes of them, and DBC files of a test's own.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <initializer_list>
-#include <string>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

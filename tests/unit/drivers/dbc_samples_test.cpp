@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver `dbc`: frames that come twice, samples that stay unfinished, files with bad lines; every loss is
 // counted.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/unit/drivers/dbc_frames.h"
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -141,7 +133,7 @@ TEST_F(DbcText, ASignBitMakesTheRateNegative) {
                                              frame(1, {0, 0, 0, 0, 0, 0xD2, 0x44, 0})};
     ifog::DriverInstance d = driver(text, {{"signal", name}});
     ASSERT_EQ(d.warnings().size(), 1U);
-    EXPECT_NE(d.warnings()[0].find("is negative where " + std::string(sign)), std::string::npos);
+    EXPECT_TRUE(ifog::test::has(d.warnings()[0], "is negative where " + std::string(sign)));
     const std::vector<ifog_sample> samples = decode(d, frames);
     ASSERT_EQ(samples.size(), 2U);
     EXPECT_NEAR(samples[0].value[0], 12.34 * std::numbers::pi / 180.0, 1e-12);
@@ -155,7 +147,7 @@ TEST_F(DbcText, ASignBitMakesTheRateNegative) {
     ifog::DriverInstance as_sent = driver(text, {{"signal", name}, {"sign", "none"}});
     EXPECT_TRUE(as_sent.warnings().empty());
     const std::string misspelt = refusal(text, {{"signal", std::string(name).substr(1)}});
-    EXPECT_NE(misspelt.find("did you mean '" + std::string(name) + "'?"), std::string::npos) << misspelt;
+    EXPECT_TRUE(ifog::test::has(misspelt, "did you mean '" + std::string(name) + "'?"));
     EXPECT_EQ(decode(as_sent, frames)[1].value[0], samples[0].value[0]);
   }
 }

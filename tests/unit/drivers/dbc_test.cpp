@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DBC reader and the bit layouts: against vectors worked out by hand, and against a second method that
 // follows the format's definition one bit at a time.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <cmath>
-#include <random>
-#include <stdexcept>
-#include <string>
-
 #include "drivers/dbc/codec.h"
 #include "drivers/dbc/database.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -3,20 +3,8 @@
 // that it refuses.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <initializer_list>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines written by hand from the maker's description of the 100 Hz interface.
-#include <gtest/gtest.h>
-
-#include <numbers>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/dsp3000/line.h"
+#include "tests/unit/test.h"
 
 namespace {
 

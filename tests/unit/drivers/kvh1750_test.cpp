@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frame layout against bytes that our encoder did not make: the standard's check value and frames packed
 // by hand from the maker's description, the CRC by the bit-serial definition.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 

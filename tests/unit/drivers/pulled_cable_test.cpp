@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cable that is pulled again and again, as at a loose connector: the gyro measures on, and every sample
 // that nobody got is to be counted, whatever the counter shows of it and however promptly the line delivers.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <string>
-
 #include "drivers/timeline/timeline.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // sbgECom frames packed by hand from SBG Systems' description of the protocol; the CRCs at their ends come
 // from the bit-serial definition, outside this program.
-#include <gtest/gtest.h>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/sbgecom/message.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

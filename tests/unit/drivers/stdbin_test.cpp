@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // STDBIN telegrams packed by hand from iXblue's description of the protocol, their sums added up outside this
 // program.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <numeric>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/stdbin/telegram.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // STIM300 datagrams packed by hand from the tables of the maker's datasheet (TS1524 rev. 31); the CRCs at
 // their ends come from long division done outside this program.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/stim300/datagram.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -146,11 +138,9 @@ TEST(Stim300, EncodesTheHandPackedDatagramsAgain) {
 }
 
 TEST(Stim300, RefusesInOneLine) {
-  EXPECT_NE(
-      refusal("stim300", {{"datagram", "0xBC"}}).find("datagram is '0xBC', expected auto or the identifier"),
-      std::string::npos)
-      << refusal("stim300", {{"datagram", "0xBC"}});
-  EXPECT_NE(refusal("stim300", {{"rate_hz", "300"}}).find("rate_hz is '300'"), std::string::npos);
+  EXPECT_TRUE(test::has(refusal("stim300", {{"datagram", "0xBC"}}),
+                        "datagram is '0xBC', expected auto or the identifier"));
+  EXPECT_TRUE(test::has(refusal("stim300", {{"rate_hz", "300"}}), "rate_hz is '300'"));
   DriverInstance driver = make_driver("stim300", {});
   ifog_sample sample{};
   sample.valid_axes = 1;

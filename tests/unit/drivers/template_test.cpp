@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The driver to copy does what its comment promises: frames by hand, split and damaged streams, encode and
 // decode.
-#include <gtest/gtest.h>
-
-#include <numbers>
-#include <vector>
-
 #include "tests/unit/drivers/decoded.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The truth table of device time: what happens on a line or bus, and what the daemon's chain must make of it.
 // The making of each stream knows when every sample was taken, and is the oracle.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <ostream>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "daemon/sensor/facts.h"
 #include "filters/chain/incrementer.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

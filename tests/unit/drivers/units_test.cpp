@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Units as DBC files spell them, against factors worked out by hand.
 #include "drivers/units/units.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
+#include "tests/unit/test.h"
 
 namespace {
 

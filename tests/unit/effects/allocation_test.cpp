@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heap allocations of Compensator::step() with a rebuilt ramp: none, while its phase is sought, found, lost
 // in gaps and turns, and taken over at a reload.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "filters/effects/compensator.h"
 #include "tests/unit/malloc_counter.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -35,8 +31,7 @@ TEST(Allocation, NoStepOfARebuiltRampAllocates) {
   ASSERT_TRUE(allocation_counter_works());
   Compensator compensator(model(), {""});
   Compensator reloaded(model(), {""});
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
+  Noise normal(1);
   CompensatorInput in;
   CompensatorOutput out;
   double phase = 0.3;
@@ -48,7 +43,7 @@ TEST(Allocation, NoStepOfARebuiltRampAllocates) {
     const double before = 4e-9 * std::sin(2.0 * M_PI * phase);
     phase += 77e3 * truth * 0.005;
     in.dt_s = 0.005;
-    in.rate_radps[0] = truth + (4e-9 * std::sin(2.0 * M_PI * phase) - before) / 0.005 + 1e-8 * normal(random);
+    in.rate_radps[0] = truth + (4e-9 * std::sin(2.0 * M_PI * phase) - before) / 0.005 + 1e-8 * normal();
     if (i % 701 == 7) in.rate_radps[0] = std::nan("");
     in.missed_s[0] = i % 3001 == 3000 ? 0.004 : 0.0;
     if (i == 10000) reloaded.take_over(compensator);

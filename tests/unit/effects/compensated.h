@@ -2,10 +2,8 @@
 // One sample through a compensator, and effects to make its models of.
 #pragma once
 
-#include <limits>
-#include <vector>
-
 #include "filters/effects/compensator.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

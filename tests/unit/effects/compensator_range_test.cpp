@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is taken away outside the ranges that a model was fitted in, and how much its variance owns to.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <utility>
-
 #include "tests/unit/effects/compensated.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

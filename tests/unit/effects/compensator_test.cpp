@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/effects/compensator.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-
 #include "filters/effects/compensate_series.h"
 #include "tests/unit/effects/compensated.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

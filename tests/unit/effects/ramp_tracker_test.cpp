@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A feedback ramp with a closed form, rebuilt online: the oracle is the formula that made the rate.
 #include "filters/effects/ramp_tracker.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <complex>
-#include <functional>
-#include <random>
-#include <stdexcept>
-
 #include "filters/effects/compensator.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

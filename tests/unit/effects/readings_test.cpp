@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A channel that is logged early is used when it acts: at any rate of samples, over gaps and a reload.
 #include "filters/effects/delayed_reading.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "filters/effects/plausible_reading.h"
 #include "tests/unit/effects/compensated.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/effects/shape.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 #include "filters/effects/compensator.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

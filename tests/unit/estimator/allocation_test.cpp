@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heap allocations of Estimator::step(): none, whatever the rule, the weights and the model, through rest,
 // outliers, gaps, missing samples, a manoeuvre and a divergence.
-#include <gtest/gtest.h>
-
 #include "filters/rules/rule.h"
 #include "tests/unit/estimator/drive.h"
 #include "tests/unit/malloc_counter.h"
+#include "tests/unit/test.h"
 
 namespace {
 

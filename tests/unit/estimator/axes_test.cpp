@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axes that are not alike and share one gain: what is said of each is its own, whichever it is.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <random>
-
 #include "filters/estimator/estimator.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
-
-using test::kPeriod;
 
 constexpr std::size_t kAxes = 3;
 
@@ -22,13 +13,12 @@ constexpr std::size_t kAxes = 3;
 // gain, which is one for all, is the same for it.
 TEST(UnlikeAxes, TheLoudOneAloneHasNotBecomeLouder) {
   test::Fed filter(test::told(1e-4, 9.0), kAxes);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
+  test::Noise normal(7);
   double alone = 0.0, together = 0.0;
   for (std::size_t i = 0; i < 40'000; ++i) {
     filter.in.valid_axes = i % 4 == 3 ? 4U : 7U;
     Axes rate{};
-    for (std::size_t a = 0; a < kAxes; ++a) rate[a] = (a == 2 ? 5.0 : 1.0) * normal(random);
+    for (std::size_t a = 0; a < kAxes; ++a) rate[a] = (a == 2 ? 5.0 : 1.0) * normal();
     filter.step(rate);
     if (i >= 20'000) (i % 4 == 3 ? alone : together) += filter.out.gain[2];
   }
@@ -67,11 +57,6 @@ TEST(UnlikeAxes, OneThatIsNotMeasuredIsKnownEverLess) {
   }
 }
 
-}  // namespace
-}  // namespace ifog
-
-namespace {
-
 // What is foreseen of a motion whose samples are lost is worth something for a while, then nothing: behind a
 // gap the measurement counts, in it the variance says how little is known. Told by the truth of the records
 // that are made here; 1 kHz, noise 1e-5 rad/s.
@@ -85,7 +70,7 @@ class Sensor {
 
   // All axes turn alike at so many sigma, and those in `lost` are missing; `missed` rows before this one.
   void step(double sigmas, std::uint32_t lost = 0, int missed = 0, std::array<double, 3> added = {}) {
-    ifog::EstimatorInput in;
+    EstimatorInput in;
     in.sequence = sequence_++;
     in.dt_s = kPeriod * (missed + 1);
     for (std::size_t a = 0; a < static_cast<std::size_t>(axes_); ++a) {
@@ -98,19 +83,19 @@ class Sensor {
   }
   [[nodiscard]] double rate(std::size_t axis) const { return out_.denoised_radps[axis] / kNoise; }
   [[nodiscard]] double sd(std::size_t axis) const { return std::sqrt(out_.variance_rad2ps2[axis]) / kNoise; }
-  [[nodiscard]] bool under_way() const { return (out_.flags & ifog::kManoeuvre) != 0; }
-  [[nodiscard]] const ifog::EstimatorHealth& health() const { return estimator_.health(); }
+  [[nodiscard]] bool under_way() const { return (out_.flags & kManoeuvre) != 0; }
+  [[nodiscard]] const EstimatorHealth& health() const { return estimator_.health(); }
 
  private:
-  static ifog::FilterSettings settings(double q_over_r) {
-    ifog::FilterSettings settings;
+  static FilterSettings settings(double q_over_r) {
+    FilterSettings settings;
     settings.measurement_noise = kNoise * kNoise;
     settings.process_noise = q_over_r * kNoise * kNoise / kPeriod;
     return settings;
   }
   int axes_;
-  ifog::Estimator estimator_;
-  ifog::EstimatorOutput out_;
+  Estimator estimator_;
+  EstimatorOutput out_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   std::uint64_t sequence_ = 0;
@@ -185,3 +170,4 @@ TEST(LostAxes, AnOutlierThatWasItsAxisLastIsNoPartOfWhatComesLongAfter) {
 }
 
 }  // namespace
+}  // namespace ifog

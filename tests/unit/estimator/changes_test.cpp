@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What changes and is no change of rate, and what creeps: drift, motions after rests of many kinds, blows, an axis that
 // is missing.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -31,14 +27,13 @@ TEST(SlowDrift, ThatIsFoundPaysAsSlowlyAsItOwed) {
 
 // Missing while the others' noise is learned, an axis must not be believed to be without noise for ever.
 TEST(AMissingAxis, HasItsOwnNoiseWhenItComes) {
-  std::mt19937_64 random(27);
-  std::normal_distribution<double> normal;
+  Noise normal(27);
   Fed filter(told(1e-6), 2);
   const ifog::EstimatorOutput& out = filter.out;
   double squares = 0.0;
   for (int i = 0; i < 40'000; ++i) {
     filter.in.valid_axes = i < 1000 ? 1 : 3;
-    ifog::Axes rate{normal(random), i < 1000 ? std::nan("") : normal(random)};
+    ifog::Axes rate{normal(), i < 1000 ? std::nan("") : normal()};
     // A turn about the late axis is found, as about the other.
     if (i >= 39'000) rate[1] += 40.0;
     filter.step(rate);
@@ -87,12 +82,11 @@ TEST(Changes, AMotionAfterARestFullOfOutliersIsFollowed) {
 // A footfall is followed from its third sample on, although it grows from each to the next, and outliers came before.
 TEST(Changes, AnOnsetThatGrowsIsFollowedFromItsThirdSample) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    Noise normal(seed);
     Fed filter(told(1e-6), 1);
-    for (int i = 0; i < 8000; ++i) filter.step({normal(random) + (i % 1000 == 500 ? 60.0 : 0.0)});
+    for (int i = 0; i < 8000; ++i) filter.step({normal() + (i % 1000 == 500 ? 60.0 : 0.0)});
     for (const double onset : {40.0, 130.0, 200.0, 390.0, 430.0, 580.0}) {
-      const double rate = onset + normal(random), denoised = filter.step({rate}).denoised_radps[0];
+      const double rate = onset + normal(), denoised = filter.step({rate}).denoised_radps[0];
       ASSERT_LT(std::abs(denoised - rate), (onset < 200.0 ? 1.1 : 0.15) * onset)
           << onset << ", seed " << seed;
     }
@@ -103,18 +97,14 @@ TEST(Changes, AnOnsetThatGrowsIsFollowedFromItsThirdSample) {
 // the first motions each one is published as measured from its first sample.
 TEST(Changes, OnsetsOfAHandAreFollowedFromTheFirstSample) {
   for (const int axes : {1, 3}) {
-    std::mt19937_64 random(9);
-    std::normal_distribution<double> normal;
+    Noise normal(9);
     Fed filter(told(1e-6), axes);
     double square = 0.0, n = 0.0;
     for (int i = 0; i < 40'000; ++i) {
       const int phase = i % 400;
       const double swing = 300.0 * std::cos(0.3 * phase) * std::exp(-0.03 * phase);
-      const double motion = phase < 100       ? swing
-                            : i % 1200 == 330 ? 100.0
-                                              : 0.0,
-                   rate = motion + normal(random);
-      filter.step({rate, 0.6 * motion + normal(random), normal(random)});
+      const double motion = phase < 100 ? swing : i % 1200 == 330 ? 100.0 : 0.0, rate = motion + normal();
+      filter.step({rate, 0.6 * motion + normal(), normal()});
       if (phase < 100 && i > 2000) square += std::pow(filter.out.denoised_radps[0] - rate, 2), n += 1.0;
     }
     EXPECT_LT(std::sqrt(square / n), 1.0) << axes;
@@ -125,12 +115,11 @@ TEST(Changes, OnsetsOfAHandAreFollowedFromTheFirstSample) {
 // known noise may be coloured, but no colour explains twenty standard deviations.
 TEST(Changes, ATurnIsFollowedThoughTheKnownNoiseIsTenTimesTooLarge) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    Noise normal(seed);
     Fed filter(told(1e-6), 3);
     double square = 0.0;
     for (int i = 0; i < 2400; ++i) {
-      const double turn = i < 400 ? 0.0 : 20.0 * std::sin(0.02 * (i - 400)), noise = 0.1 * normal(random);
+      const double turn = i < 400 ? 0.0 : 20.0 * std::sin(0.02 * (i - 400)), noise = 0.1 * normal();
       square += std::pow(filter.step({turn + noise, noise, -noise}).denoised_radps[0] - turn, 2);
     }
     EXPECT_LT(std::sqrt(square / 2400), 1.0) << seed;
@@ -141,13 +130,12 @@ TEST(Changes, ATurnIsFollowedThoughTheKnownNoiseIsTenTimesTooLarge) {
 // prediction of the shaking.
 TEST(Changes, AShakeSoonAfterATurnIsNotPredictedByIt) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    Noise normal(seed);
     Fed filter(told(1e-6), 1);
     for (int i = 0; i < 3350; ++i) {
       const double turn = 4000.0 * std::sin(0.02 * i) * std::min(1.0, (3000 - i) / 20.0);
       const double rate =
-          normal(random) + (i >= 1000 && i < 3000 ? turn : 0.0) + (i >= 3150 ? 4.0 * normal(random) : 0.0);
+          normal() + (i >= 1000 && i < 3000 ? turn : 0.0) + (i >= 3150 ? 4.0 * normal() : 0.0);
       const double denoised = filter.step({rate}).denoised_radps[0];
       if (i < 3150) continue;
       ASSERT_LT(std::abs(denoised - rate), 40.0) << i << ", seed " << seed;
@@ -159,15 +147,14 @@ TEST(Changes, AShakeSoonAfterATurnIsNotPredictedByIt) {
 // is no outlier.
 TEST(Changes, AMotionGoesOnAfterRepeatedRows) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    Noise normal(seed);
     Fed filter(told(1e-6), 3);
     ifog::Axes held{};
     for (int i = 0; i < 6000; ++i) {
       const double swing = i < 2000 ? 0.0 : 1000.0;
       if (i % 100 >= 4)
         for (std::size_t a = 0; a < 3; ++a)
-          held[a] = normal(random) + swing * std::sin(0.1 * i + static_cast<double>(a)) * std::sin(0.013 * i);
+          held[a] = normal() + swing * std::sin(0.1 * i + static_cast<double>(a)) * std::sin(0.013 * i);
       const ifog::Axes& denoised = filter.step(held).denoised_radps;
       if (i < 2100) continue;
       for (std::size_t a = 0; a < 3; ++a)
@@ -238,9 +225,8 @@ TEST(LouderNoise, InAMotionIsWhatTheFilterAtRestIsMovedIn) {
     Record r = record(seed, kQuiet + 1500, 1e-8, [](int i) {
       return i < kFrom || i >= kFrom + kTurn ? 0.0 : 400.0 * std::sin(3.14159265 * (i - kFrom) / kTurn);
     });
-    std::mt19937_64 random(seed + 100);
-    std::normal_distribution<double> normal;
-    for (std::size_t i = kFrom; i < kQuiet; ++i) r.measured[i] = r.truth[i] + 30.0 * normal(random);
+    Noise normal(seed + 100);
+    for (std::size_t i = kFrom; i < kQuiet; ++i) r.measured[i] = r.truth[i] + 30.0 * normal();
     const Filtered got = run(told(1e-8), r.measured);
     for (std::size_t i = kQuiet + 500; i < r.truth.size(); ++i)
       square += std::pow(got.denoised[i] - r.truth[i], 2) / 1000.0 / kSeeds;

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Noise that is not white, as every measured record's: lines, a colour, tails. The test for manoeuvres must
 // not find any in it, and must still find a real one.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <numbers>
-#include <random>
-#include <span>
-#include <tuple>
-
 #include "filters/estimator/walk.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
+namespace ifog {
 namespace {
 
-using namespace ifog::test;
+using namespace test;
 
 struct Colour {
   const char* name;
@@ -50,7 +41,7 @@ double spread(const std::vector<double>& values, std::size_t from) {
 
 std::ptrdiff_t moving(const Filtered& got, std::size_t from, std::size_t until) {
   return std::ranges::count_if(std::span(got.flags).first(until).subspan(from),
-                               [](std::uint32_t each) { return (each & ifog::kManoeuvre) != 0; });
+                               [](std::uint32_t each) { return (each & kManoeuvre) != 0; });
 }
 
 class ColouredNoise : public testing::TestWithParam<Colour> {};
@@ -60,7 +51,7 @@ TEST_P(ColouredNoise, IsNotTakenForManoeuvres) {
   constexpr std::size_t kLearned = 10'000;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const std::vector<double> measured = coloured(GetParam(), seed, kLength);
-    ifog::FilterSettings settings = told(1e-6);
+    FilterSettings settings = told(1e-6);
     const Filtered followed = run(settings, measured);
     settings.follow_manoeuvres = false;
     const Filtered plain = run(settings, measured);
@@ -102,7 +93,7 @@ TEST(StronglyColouredNoise, ThatBeginsLikeAMotionIsNotFollowedForEver) {
   for (const auto& [correlation, seeds] : {std::pair{0.9, 40U}, {0.98, 180U}}) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       const std::vector<double> measured = coloured({"", correlation, 0.0, 0.0}, seed, 8000);
-      EXPECT_EQ(run(told(1e-6), measured).flags.back() & ifog::kManoeuvre, 0U)
+      EXPECT_EQ(run(told(1e-6), measured).flags.back() & kManoeuvre, 0U)
           << "correlation " << correlation << ", seed " << seed;
     }
   }
@@ -115,7 +106,7 @@ TEST(SmallMotion, OfARealSensorIsNoColour) {
        {std::tuple{"sub_tilt_y", 8.8e-13, 1.1}, {"kvh1750_direct_imu_rate", 1.7e-8, 3.0}}) {
     const std::string path = std::string(IFOG_SHARED_DATA) + "/" + name + ".csv.gz";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there, beside the project";
-    const std::vector<double> measured = ifog::read_capture(path).rate_radps[0];
+    const std::vector<double> measured = read_capture(path).rate_radps[0];
     const Filtered got = run(told(1e-3 * noise, noise), measured);
     EXPECT_LT(std::sqrt(mean_square_error(got.denoised, measured, 0) / noise), most) << name;
   }
@@ -124,11 +115,6 @@ TEST(SmallMotion, OfARealSensorIsNoColour) {
 INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
                          testing::Values(Colour{"correlated", 0.5, 0.0, 0.0}, Colour{"line", 0.0, 0.8, 0.0},
                                          Colour{"tails", 0.0, 0.0, 0.02}, Colour{"all", 0.3, 0.5, 0.01}));
-
-}  // namespace
-
-namespace ifog {
-namespace {
 
 // What a stream says of its noise: what is white over every octave and walks, and what is motion.
 
@@ -146,26 +132,24 @@ TEST(Walk, TakesNoMotionForNoise) {
       [](int i, double noise) { return noise + 10.0 * std::sin(kRadian * 0.01 * i); },
       [](int i, double noise) { return noise + 0.01 * (i % 4000); }};
   for (std::size_t m = 0; m < motions.size(); ++m) {
-    std::mt19937_64 engine(7);
-    std::normal_distribution<double> normal;
+    test::Noise normal(7);
     Walk learner;
     for (int i = 0; i < 100'000; ++i)
-      ASSERT_FALSE(learner.take({motions[m](i, normal(engine))}, 1, true)) << m << ", sample " << i;
+      ASSERT_FALSE(learner.take({motions[m](i, normal())}, 1, true)) << m << ", sample " << i;
   }
 }
 
 // What an earlier run knew stands until this one has had as much, and falls where the sensor is another one.
 TEST(Walk, RecallsUntilItIsContradicted) {
-  std::mt19937_64 engine(11);
-  std::normal_distribution<double> normal;
+  test::Noise normal(11);
   Walk walks[3];
   double found[3] = {}, walked = 0.0;
   walks[0].recall(1e-9, 1e6);  // the same
   walks[1].recall(1e-4, 1e6);  // the sensor is slower
   walks[2].recall(1e-9, 1e6);  // it is quicker
   for (int i = 0; i < 400'000; ++i) {
-    const double rate = normal(engine);
-    walked += 1e-2 * normal(engine);
+    const double rate = normal();
+    walked += 1e-2 * normal();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto news = walks[k].take({k == 2 ? rate + walked : rate}, 1, true);
       if (news) found[k] = news->ratio;

@@ -3,14 +3,8 @@
 // noise.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <random>
-#include <span>
-#include <vector>
-
 #include "filters/estimator/estimator.h"
+#include "tests/unit/test.h"
 
 namespace ifog::test {
 
@@ -22,14 +16,13 @@ struct Record {
 
 inline Record record(std::uint64_t seed, int length, double walk_over_noise,
                      const std::function<double(int)>& motion = nullptr) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   Record made;
   double walk = 0.0;
   for (int i = 0; i < length; ++i) {
-    if (i > 0) walk += std::sqrt(walk_over_noise) * normal(random);
+    if (i > 0) walk += std::sqrt(walk_over_noise) * normal();
     made.truth.push_back(walk + (motion ? motion(i) : 0.0));
-    made.measured.push_back(made.truth.back() + normal(random));
+    made.measured.push_back(made.truth.back() + normal());
   }
   return made;
 }

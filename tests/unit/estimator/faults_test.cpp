@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Missing and bad measurements, uneven time, a stuck sensor, a covariance that breaks.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A sensor that turns while samples are lost, or come and cannot be used: the motion is still a motion, and
 // none of its angle goes. Told by the truth of the records that are made here; 1 kHz, noise 1e-4 rad/s.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <utility>
-
 #include "filters/estimator/estimator.h"
 #include "tests/unit/estimator/drive.h"
-#include "tests/unit/sanitized.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -285,13 +275,12 @@ TEST(Holes, AnAxisWithoutANumberWhileAnotherJumpsFollowsItsOwnStepAfterwards) {
 TEST(Holes, AMissingSampleOfAShakeIsHeldAndOfATurnPredicted) {
   for (const bool shakes : {true, false}) {
     ifog::test::Fed filter(ifog::test::told(1e-6));
-    std::mt19937_64 random(3);
-    std::normal_distribution<double> normal;
+    ifog::test::Noise normal(3);
     double last = 0.0, before = 0.0, square = 0.0, held = 0.0, nees = 0.0, count = 0.0;
     for (int i = 0; i < 12'000; ++i) {
-      const double turn = 300.0 * std::sin(0.1 * i), now = 100.0 * normal(random);
+      const double turn = 300.0 * std::sin(0.1 * i), now = 100.0 * normal();
       const double shake = now - std::exchange(before, now);  // its angle is bounded
-      const double rate = (i < 2000 ? 0.0 : shakes ? shake : turn) + normal(random);
+      const double rate = (i < 2000 ? 0.0 : shakes ? shake : turn) + normal();
       const bool missing = i % 7 == 6;
       filter.in.valid_axes = missing ? 0U : 1U;
       const ifog::EstimatorOutput& out = filter.step({rate});

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is published of a model with a colour or a line: the level alone. The rest of the model is the noise
 // it was tuned on.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <numbers>
 
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -87,7 +85,7 @@ TEST(Published, LeavesALineInside) {
   EXPECT_LT(amplitude, 0.01);
 }
 
-// The error that the filter announces is the level's, too.
+// The error that the filter announces is the level's, too; the doubt whether a change has begun adds less than a percent.
 TEST(Published, VarianceIsTheLevels) {
   constexpr double kPhi = 0.5, kShock = 0.75;
   ifog::FilterSettings settings = told(kWalkStep);
@@ -95,17 +93,16 @@ TEST(Published, VarianceIsTheLevels) {
   settings.state = "random-walk + ar(1)";
   settings.state_parameters = {kPhi, kShock / kWalkStep};
   Fed filter(settings);
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  Noise normal(3);
   double colour = 0.0;
   for (int i = 0; i < 20'000; ++i) {
-    filter.step({normal(random) + colour});
-    colour = kPhi * colour + std::sqrt(kShock) * normal(random);
+    filter.step({normal() + colour});
+    colour = kPhi * colour + std::sqrt(kShock) * normal();
   }
   const double ideal =
       level_error(Eigen::Vector2d(1.0, kPhi).asDiagonal(), Eigen::Vector2d(kWalkStep, kShock).asDiagonal(),
                   Eigen::Vector2d(1.0, 1.0));
-  EXPECT_NEAR(std::sqrt(filter.out.variance_rad2ps2[0]) / ideal, 1.0, 1e-3);
+  EXPECT_NEAR(std::sqrt(filter.out.variance_rad2ps2[0]) / ideal, 1.0, 5e-3);
 }
 
 // A sensor with an output filter, as in a flight controller's log: all its noise at rest is the model's colour, and R is

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rest detector, and the noise that is learned while it says so.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include "filters/chain/signal_chain.h"
 #include "filters/estimator/estimator.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -26,12 +21,11 @@ FilterSettings told(double ratio) {
 // Share of the samples from `from` on that are flagged, of a sensor that moves so, σ.
 template <class Motion>
 double share_at_rest(const FilterSettings& settings, int from, int samples, const Motion& motion) {
-  std::mt19937_64 engine(20261122);
-  std::normal_distribution<double> noise(0.0, kSigma_radps);
+  test::Noise noise(20261122, kSigma_radps);
   test::Fed filter(settings, 1, kPeriod_s);
   int flagged = 0;
   for (int i = 0; i < samples; ++i) {
-    const EstimatorOutput& out = filter.step({kSigma_radps * motion(i) + noise(engine)});
+    const EstimatorOutput& out = filter.step({kSigma_radps * motion(i) + noise()});
     if (i >= from && (out.flags & kAtRest) != 0) ++flagged;
   }
   return static_cast<double>(flagged) / (samples - from);
@@ -146,15 +140,14 @@ TEST(LearnedNoise, AStartInATurnIsPutRight) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     ChainSettings settings = untold();
     SignalChain chain(std::make_unique<ChainParts>(settings));
-    std::mt19937_64 engine(seed);
-    std::normal_distribution<double> noise(0.0, kSigma_radps);
+    test::Noise noise(seed, kSigma_radps);
     Increment in;
     ChainOutput out;
     in.dt_s = in.covered_s[0] = kPeriod_s;
     in.valid_axes = 1;
     for (int i = 0; i < 40'000; ++i) {
       in.sequence = static_cast<std::uint64_t>(i);
-      in.rate_radps[0] = noise(engine) + 1.7 * std::exp(-0.01 * std::max(0, i - 700));
+      in.rate_radps[0] = noise() + 1.7 * std::exp(-0.01 * std::max(0, i - 700));
       in.delta_theta_rad[0] = in.rate_radps[0] * kPeriod_s;
       chain.process(in, out);
     }

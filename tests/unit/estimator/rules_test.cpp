@@ -2,22 +2,10 @@
 // The published gain at rest against the paper's equations, by the published innovations and the random weights of the
 // numbers of their samples: with P- = P + Q (10) and C the weighted average of the last N squared innovations, K = P- / C
 // and P = K (C - P-).
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <deque>
-#include <functional>
-#include <string>
-#include <utility>
-
 #include "filters/estimator/estimator.h"
 #include "filters/random/deviates.h"
 #include "tests/unit/estimator/drive.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog::test {
 namespace {
@@ -127,13 +115,12 @@ using namespace ifog::test;
 constexpr double kWalk = 3e-7;
 
 Record correlated(std::uint64_t seed, int length, double correlation) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  Noise normal(seed);
   Record made;
-  double walk = 0.0, noise = normal(random);
+  double walk = 0.0, noise = normal();
   for (int i = 0; i < length; ++i) {
-    walk += std::sqrt(kWalk) * normal(random);
-    noise = correlation * noise + std::sqrt(1 - correlation * correlation) * normal(random);
+    walk += std::sqrt(kWalk) * normal();
+    noise = correlation * noise + std::sqrt(1 - correlation * correlation) * normal();
     made.truth.push_back(walk);
     made.measured.push_back(walk + noise);
   }

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The smoother against the least squares that it stands for, solved densely.
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <span>
-#include <vector>
 
 #include "filters/smoother/motion_smoother.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state folder: proposals, the history of what was adopted, and the mark of a running daemon.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <string>
 
 #include "daemon/config/config.h"
 #include "daemon/state/running_mark.h"
@@ -16,8 +12,7 @@
 #include "drivers/flight/archive.h"
 #include "drivers/flight/folder.h"
 #include "drivers/transport/clock.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/recorded.h"
@@ -145,18 +140,18 @@ TEST_F(StateFolder, ADamagedProposalIsOneLine) {
     changed.replace(changed.find(from), from.size(), to);
     write("nose.proposal.json", changed);
     const std::string said = complaint([&] { (void)read_proposal(folder(), "nose"); });
-    EXPECT_EQ(said.find('\n'), std::string::npos);
+    EXPECT_FALSE(ifog::test::has(said, "\n"));
     return said;
   };
-  EXPECT_NE(with("ifog.proposal/1", "ifog.proposal/2").find("expected ifog.proposal/1"), std::string::npos);
-  EXPECT_NE(with("\"why\"", "\"who\"").find("damaged"), std::string::npos);
-  EXPECT_NE(with("\"nose\"", "\"tail\"").find("another sensor"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(with("ifog.proposal/1", "ifog.proposal/2"), "expected ifog.proposal/1"));
+  EXPECT_TRUE(ifog::test::has(with("\"why\"", "\"who\""), "damaged"));
+  EXPECT_TRUE(ifog::test::has(with("\"nose\"", "\"tail\""), "another sensor"));
   // What the index names is removed and read: nothing but what lies beside it.
-  EXPECT_NE(with("nose.proposal-", "../../proposal-").find("outside of its folder"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(with("nose.proposal-", "../../proposal-"), "outside of its folder"));
   const Proposal proposal = proposal_of(model, {});
   write(proposal.model_file, model_text(model_with(9e-8)));
-  EXPECT_NE(complaint([&] { (void)proposed_model(folder(), proposal); }).find("is another model"),
-            std::string::npos);
+  EXPECT_TRUE(
+      ifog::test::has(complaint([&] { (void)proposed_model(folder(), proposal); }), "is another model"));
 }
 
 TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
@@ -190,11 +185,10 @@ TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
 
 TEST_F(StateFolder, OneCommandAtATime) {
   const StateLock mine(folder());
-  EXPECT_NE(complaint([&] { const StateLock other(folder()); }).find("another command works in it"),
-            std::string::npos);
-  EXPECT_NE(
-      complaint([&] { const StateLock other(path("none")); }).find("expected the daemon's state folder"),
-      std::string::npos);
+  EXPECT_TRUE(
+      ifog::test::has(complaint([&] { const StateLock other(folder()); }), "another command works in it"));
+  EXPECT_TRUE(ifog::test::has(complaint([&] { const StateLock other(path("none")); }),
+                              "expected the daemon's state folder"));
 }
 
 TEST_F(StateFolder, TheMarkIsThereAsLongAsItsProcess) {
@@ -213,7 +207,7 @@ TEST_F(StateFolder, TheMarkIsThereAsLongAsItsProcess) {
   EXPECT_EQ(said, 'y');
   EXPECT_EQ(running_daemon(folder()), child);
   RunningMark second;
-  EXPECT_NE(second.set(folder()).find("process " + std::to_string(child)), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(second.set(folder()), "process " + std::to_string(child)));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_FALSE(running_daemon(folder()));
@@ -232,8 +226,8 @@ TEST_F(StateFolder, AMarkThatIsNoDaemonsIsNotTakenForOne) {
     lock.l_type = type;
     lock.l_whence = SEEK_SET;
     ASSERT_EQ(::fcntl(fd, F_OFD_SETLK, &lock), 0);
-    EXPECT_NE(complaint([&] { (void)running_daemon(folder()); }).find("by no process that can be seen"),
-              std::string::npos);
+    EXPECT_TRUE(ifog::test::has(complaint([&] { (void)running_daemon(folder()); }),
+                                "by no process that can be seen"));
     RunningMark mark;
     EXPECT_NE(mark.set(folder()), "");
     EXPECT_FALSE(mark.is_set());
@@ -255,10 +249,10 @@ TEST_F(StateFolder, AMarkThatIsNoDaemonsIsNotTakenForOne) {
 TEST_F(StateFolder, NothingIsWrittenThroughALink) {
   write("elsewhere", "mine");
   fs::create_symlink("elsewhere", path("nose.night.json"));
-  EXPECT_NE(complaint([&] {
-              write_bookmark(folder(), {"nose", 1, "now", "said"});
-            }).find("no regular file"),
-            std::string::npos);
+  EXPECT_TRUE(ifog::test::has(complaint([&] {
+                                write_bookmark(folder(), {"nose", 1, "now", "said"});
+                              }),
+                              "no regular file"));
   EXPECT_EQ(content("elsewhere"), "mine");
 }
 
@@ -292,13 +286,7 @@ TEST_F(StateFolder, ASensorWithoutAModelHasTheAdoptedOne) {
   EXPECT_EQ(alone.sensors[0].model, path("nose.model.toml"));
 }
 
-}  // namespace
-}  // namespace ifog::tools
-
 // A warm-up counts from power-up: recordings of several power-ups are not one.
-
-namespace ifog::tools {
-namespace {
 
 class PoweredRecordings : public testing::Test, protected test::OwnFolder {
  protected:

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a model gains on a recording: the effect that was put in, and the error it leaves.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <random>
-
+#include "tests/unit/test.h"
 #include "tools/ifog/field/recorded.h"
 
 namespace ifog::tools {
@@ -15,8 +10,7 @@ constexpr double kCoefficient = 2e-7;  // rad/s/degC
 
 Recorded recorded_hour(double coefficient) {
   constexpr double kPeriod_s = 0.1;
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(5);
   Capture capture;
   capture.axes = {""};
   capture.rate_radps.resize(1);
@@ -26,7 +20,7 @@ Recorded recorded_hour(double coefficient) {
     const double t = i * kPeriod_s, temperature = 27.0 + 3.0 * std::sin(2.0 * std::numbers::pi * t / 900.0);
     capture.time_s.push_back(t);
     capture.channels[0].values.push_back(temperature);
-    capture.rate_radps[0].push_back(5e-5 + coefficient * (temperature - 25.0) + 1e-6 * normal(random));
+    capture.rate_radps[0].push_back(5e-5 + coefficient * (temperature - 25.0) + 1e-6 * normal());
   }
   return {LongCapture(long_table(capture), "hour"), kPeriod_s, {{{0, 36000}}, 36000, 0, 0, {}, {}}};
 }

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Other programs, run to their end or to the end of patience.
 #include "tools/ifog/fleet/process.h"
-
-#include <gtest/gtest.h>
-
-#include <chrono>
+#include "tests/unit/test.h"
 
 namespace ifog::tools {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that begin, end and go; a disk that is full, damaged, or shared with others.
-#include <gtest/gtest.h>
-
 #include <unistd.h>
 
-#include <filesystem>
-
 #include "tests/unit/flight/recordings.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -163,7 +159,7 @@ TEST(FlightArchive, RunsThatOverlapAreTold) {
   const ReadBack read = read_back(all_of(disk));
   EXPECT_EQ(read.counts.early_files, 1U);
   ASSERT_EQ(losses(read.counts).size(), 2U);  // and that they are three
-  EXPECT_NE(losses(read.counts)[1].find("two recorders wrote at once"), std::string::npos);
+  EXPECT_TRUE(test::has(losses(read.counts)[1], "two recorders wrote at once"));
 }
 
 TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {

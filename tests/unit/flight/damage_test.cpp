@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording that is torn or changed: every loss is counted, and nothing false comes out of it.
-#include <gtest/gtest.h>
-
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording through its driver: the samples that the driver gave when it was recorded.
 #include "drivers/flight/decode.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstring>
-#include <memory>
-
 #include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

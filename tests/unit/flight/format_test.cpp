@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The format to the byte, by hand, against its description (drivers/flight/format.md).
-#include <gtest/gtest.h>
-
 #include "tests/unit/flight/recordings.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -2,21 +2,9 @@
 // Recordings for tests, in memory, and what reading them gives.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
-#include <map>
-#include <memory>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "drivers/flight/archive.h"
 #include "drivers/flight/flight_reader.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorder through a year on a disk that others fill and empty, that is slow for up to a day, that goes and
 // comes back, as it was or empty.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <map>
-#include <memory>
-#include <random>
-#include <set>
-#include <vector>
-
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // That what is written comes back to the bit, in chunks of any size, and that no reader is left behind. What
 // others write and read, and damaged files, are tried by system/command_line/hdf5.py.
-#include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "drivers/capture/hdf5/hdf5_id.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
 #include "tests/unit/capture/read_capture.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -107,8 +96,7 @@ TEST_F(Hdf5Folder, ReadsChunksOfAnySizeToTheBit) {
 // What all columns keep of unpacked chunks is bounded: beyond it the message says how to repack the file.
 TEST_F(Hdf5Folder, SaysWhatMakesSmallerChunks) {
   write_chunks(path("c.h5"), {{}, {}, {}}, 25U << 20U, 25U << 20U);  // 200 MiB a column
-  EXPECT_NE(ifog::test::refusal([&] { read(path("c.h5")); }).find("h5repack -l CHUNK=65536"),
-            std::string::npos);
+  EXPECT_TRUE(ifog::test::has(ifog::test::refusal([&] { read(path("c.h5")); }), "h5repack -l CHUNK=65536"));
 }
 
 }  // namespace

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // State models against closed forms: matrices against their definition, the likelihood of a line and of sums
 // against the normal density of the whole record with its dense covariance.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-
 #include "filters/kalman/core.h"
 #include "filters/kalman/likelihood.h"
 #include "filters/state_models/state_model.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -83,11 +77,9 @@ class ModelLikelihood : public testing::TestWithParam<Case> {};
 // Also with a missing sample, which is a row and a column that are not there.
 TEST_P(ModelLikelihood, IsThatOfTheDenseCovariance) {
   const Case& c = GetParam();
-  std::mt19937_64 random(21);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(21);
   std::vector<double> record;
-  for (int i = 0; i < kLength; ++i)
-    record.push_back(3e-4 * std::sin(0.8 * i + 0.3) + 1e-3 + 2e-4 * normal(random));
+  for (int i = 0; i < kLength; ++i) record.push_back(3e-4 * std::sin(0.8 * i + 0.3) + 1e-3 + 2e-4 * normal());
   const auto model = ifog::make_state_model(c.name, c.parameters, kPeriod_s);
   for (const int missing : {kLength, 40}) {
     std::vector<int> at;
@@ -136,47 +128,6 @@ INSTANTIATE_TEST_SUITE_P(
                return autoregression(i, j, 0.7L, kQ) + walk(i, j, 0.5L * kQ, kStart) +
                       line(i, j, 8.34L, 0.01L * kQ, kStart);
              }}));
-
-// The state turns by 2 pi f dt, and as a turn keeps an isotropic covariance, integral of A(s) A(s)' ds is dt
-// times the identity (the Lyapunov equation P' = W P + P W' + I of a skew W).
-TEST(Harmonic, TurnsByItsFrequencyAndGathersNoiseInTime) {
-  const auto model = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod_s);
-  Eigen::MatrixXd transition(2, 2), driving(2, 2);
-  for (const double dt : {0.01, 0.1, 7.0}) {
-    model->discretise(dt, transition, driving);
-    const double angle = 2 * std::numbers::pi * 3.3 * dt;
-    Eigen::Matrix2d turn;
-    turn << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle);
-    EXPECT_LT((transition - turn).norm(), 1e-12) << dt;
-    EXPECT_LT((driving - dt * Eigen::Matrix2d::Identity()).norm(), 1e-12) << dt;
-  }
-}
-
-// Blocks of the terms on the diagonal, nothing outside them, noise by each one's ratio, measurement the sum.
-TEST(Sum, IsBlockDiagonal) {
-  const auto sum = ifog::make_state_model("integrated-random-walk + gauss-markov + harmonic",
-                                          std::vector{0.5, 0.1, 3.3, 0.25}, kPeriod_s);
-  const auto first = ifog::make_state_model("integrated-random-walk", {}, kPeriod_s);
-  const auto second = ifog::make_state_model("gauss-markov", std::vector{0.5}, kPeriod_s);
-  const auto third = ifog::make_state_model("harmonic", std::vector{3.3}, kPeriod_s);
-  Eigen::MatrixXd transition(5, 5), driving(5, 5);
-  sum->discretise(0.03, transition, driving);
-  Eigen::MatrixXd expected_transition = Eigen::MatrixXd::Zero(5, 5), expected_driving = expected_transition;
-  Eigen::VectorXd measurement(5);
-  int at = 0;
-  for (const auto& [model, ratio] : {std::pair{&first, 1.0}, {&second, 0.1}, {&third, 0.25}}) {
-    const int n = (*model)->states();
-    Eigen::MatrixXd a(n, n), q(n, n);
-    (*model)->discretise(0.03, a, q);
-    expected_transition.block(at, at, n, n) = a;
-    expected_driving.block(at, at, n, n) = ratio * q;
-    measurement.segment(at, n) = (*model)->measurement();
-    at += n;
-  }
-  EXPECT_EQ(transition, expected_transition);
-  EXPECT_EQ(driving, expected_driving);
-  EXPECT_EQ(sum->measurement(), measurement);
-}
 
 // The rate is what carries the level; without a term made for that, the first.
 TEST(Sum, PublishesTheTermsThatCarryTheLevel) {
@@ -280,15 +231,14 @@ TEST_P(LongLikelihood, HoldsTheGainWithoutBeingSeen) {
   const Long& c = GetParam();
   constexpr std::size_t kLength = 60'000;
   const auto model = ifog::make_state_model(c.name, c.parameters, kPeriod_s);
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(17);
   std::vector<std::vector<double>> axes(3);
   double slow = 0.0, fast = 0.0;
   for (std::size_t k = 0; k < kLength; ++k) {
     for (auto& axis : axes) {
-      slow += 1e-4 * normal(random);
-      fast = 0.8 * fast + 0.3 * normal(random);
-      axis.push_back(slow + fast + normal(random));
+      slow += 1e-4 * normal();
+      fast = 0.8 * fast + 0.3 * normal();
+      axis.push_back(slow + fast + normal());
     }
   }
   if (c.missing) {

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/lcm/lcm_events.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <lcm/lcm-cpp.hpp>
-#include <numeric>
-#include <string>
-#include <vector>
 
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
 
 namespace ifog::tools {
 namespace {

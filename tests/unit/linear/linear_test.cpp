@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Least squares of our own and what is taken out of columns, against closed forms; an exact sum.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
 #include "filters/linear/exact_sum.h"
 #include "filters/linear/normal_equations.h"
 #include "filters/linear/projection.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -55,13 +51,12 @@ TEST(NormalEquations, OfAColumnOfNothingAreFinite) {
 
 // Normal equations: the second way to the same residual.
 TEST(Projection, LeavesTheResidualOfLeastSquares) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
+  test::Noise normal(1);
   Eigen::MatrixXd x(200, 3);
   Columns several(200, 2);
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) x(i, j) = normal(random);
-    for (Eigen::Index j = 0; j < 2; ++j) several(i, j) = normal(random) + x(i, j);
+    for (Eigen::Index j = 0; j < 3; ++j) x(i, j) = normal();
+    for (Eigen::Index j = 0; j < 2; ++j) several(i, j) = normal() + x(i, j);
   }
   Eigen::VectorXd one = several.col(0);
   const Eigen::MatrixXd expected =

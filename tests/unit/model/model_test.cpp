@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/model_file/model.h"
-
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-
-#include <algorithm>
-#include <initializer_list>
-#include <stdexcept>
-#include <utility>
 
 #include "filters/effects/form.h"
 #include "filters/effects/shape.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/effect_parameters.h"
+#include "filters/model_file/model.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/model_file/sha256.h"
 #include "filters/model_file/toml_text.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -89,8 +81,7 @@ TEST(ModelFile, ADifferenceOfChannelsIsTwoKeys) {
   model.effects = {gradient};
   model.ranges = {{gradient.channel, -2.0, 3.0}};
   const std::string text = model_text(model);
-  EXPECT_NE(text.find("channel = \"inner_degC\"\nminus_channel = \"outer_degC\"\n"), std::string::npos)
-      << text;
+  EXPECT_TRUE(test::has(text, "channel = \"inner_degC\"\nminus_channel = \"outer_degC\"\n"));
   const Model back = parse_model(text, "m.toml");
   EXPECT_EQ(back.effects[0].channel, gradient.channel);
   EXPECT_EQ(back.ranges[0].channel, gradient.channel);
@@ -178,7 +169,7 @@ TEST(ModelFile, NumbersThatNoSensorHasAreRefusedByLine) {
     const auto number =
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(changed)), '\n') + 1;
     EXPECT_EQ(said.find("m.toml:" + std::to_string(number) + ": "), 0U) << instead << ": " << said;
-    EXPECT_NE(said.find("expected"), std::string::npos) << said;
+    EXPECT_TRUE(test::has(said, "expected"));
   }
 }
 
@@ -192,7 +183,7 @@ TEST(ModelFile, ACovarianceMustBeOne) {
            {"[1.0, 0.5, 0.5, inf]", "finite"}}) {
     const std::string said =
         complaint(with("covariance = [1, 0.5, 0.5, 2]", std::string("covariance = ") + values));
-    EXPECT_NE(said.find(flaw), std::string::npos) << values << ": " << said;
+    EXPECT_TRUE(test::has(said, flaw)) << values << ": " << said;
   }
 }
 
@@ -210,7 +201,7 @@ TEST(ModelFile, HasTheCovarianceOfWhatIsCorrected) {
   model.covariance.assign(16, 0.0);
   for (std::size_t i = 0; i < 4; ++i) model.covariance[5 * i] = variances[i];
   const std::string text = model_text(model);
-  EXPECT_NE(text.find("covariance = [4e-16]"), std::string::npos) << text;
+  EXPECT_TRUE(test::has(text, "covariance = [4e-16]"));
   const std::string all =
       "covariance = [9e-16, 0, 0, 0, 0, 9e-16, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 4e-16]";  // as files had it
   std::string before = text;
@@ -222,7 +213,7 @@ TEST(ModelFile, HasTheCovarianceOfWhatIsCorrected) {
   }
   model.effects = {line};
   model.covariance.resize(9);
-  EXPECT_EQ(model_text(model).find("covariance"), std::string::npos);
+  EXPECT_FALSE(test::has(model_text(model), "covariance"));
 }
 
 // What a form does not know would correct nothing, in silence.

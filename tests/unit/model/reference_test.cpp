@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reference model and the table of forms, which the manual is made of: all that the program writes, reads
 // and knows.
-#include <gtest/gtest.h>
-
-#include <fstream>
 #include <regex>
-#include <set>
-#include <sstream>
-#include <string>
 
 #include "filters/effects/form.h"
 #include "filters/model_file/effect_parameters.h"
 #include "filters/model_file/model.h"
 #include "filters/settings/filter_table.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

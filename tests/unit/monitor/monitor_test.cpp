@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // `ifog monitor` shows what anybody on the network may send: names are shown, never obeyed, and a message
 // that is no message of ours is counted.
-#include <gtest/gtest.h>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 
-#include <chrono>
-#include <cstdlib>
-#include <limits>
-#include <string>
-#include <thread>
-#include <vector>
-
 #include "msgs/in_order.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/messages.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 #include "tools/ifog/captures/lcm/lcm_loss.h"
 
 namespace {
@@ -89,7 +81,7 @@ TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
                            "books: 60 CAN frames = 50 decoded + 7 refused + 3 not the sensor's; 50 samples = "
                            "46 published + 2 merged + 1 not sent + 1 waiting",
                            "model \\x1b]52", "messages that are none of ours"})
-    EXPECT_NE(said.find(part), std::string::npos) << part << " is not in\n" << said;
+    EXPECT_TRUE(ifog::test::has(said, part)) << part << " is not in\n" << said;
 }
 
 }  // namespace

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `ifog monitor` shows of a sensor, at any width; and messages as JSON.
-#include <gtest/gtest.h>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <fstream>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "msgs/counters.h"
+#include "tests/unit/test.h"
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/sensor_view.h"
 #include "tools/report/text.h"
@@ -54,8 +47,6 @@ std::string joined(const std::vector<ShownLine>& lines) {
   return out;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST(MonitorView, FiguresOfASecondAreThoseOfItsMessages) {
   SensorView view;
   // Mean 2, deviation sqrt(((-1)^2 + 0 + 1)/2) = 1, times 1e-6 rad/s = 0.2063 °/h.
@@ -67,11 +58,10 @@ TEST(MonitorView, FiguresOfASecondAreThoseOfItsMessages) {
   EXPECT_NEAR(view.axes()[0].noise_radps, 1e-6, 1e-18);
   EXPECT_TRUE(std::isnan(view.axes()[2].rate_radps));
   const std::string text = joined(view_lines("NOSE", view, {}));
-  EXPECT_NE(text.find("  x  +0.4125 °/h  noise 0.2063 (raw 0.2063)  angle +0.000000°"), std::string::npos)
-      << text;
-  EXPECT_NE(text.find("  y  "), std::string::npos);
-  EXPECT_NE(text.find("  z  "), std::string::npos);
-  EXPECT_NE(text.find("nothing lost"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(text, "  x  +0.4125 °/h  noise 0.2063 (raw 0.2063)  angle +0.000000°"));
+  EXPECT_TRUE(ifog::test::has(text, "  y  "));
+  EXPECT_TRUE(ifog::test::has(text, "  z  "));
+  EXPECT_TRUE(ifog::test::has(text, "nothing lost"));
   view.end_interval(1.0);
   EXPECT_TRUE(view.axes().empty());
 }
@@ -83,13 +73,13 @@ TEST(MonitorView, WhatIsStaleOrAbsentIsNotShownAsLive) {
   view.take(status_message());
   view.end_interval(1.0);
   std::string text = joined(view_lines("NOSE", view, {}));
-  EXPECT_NE(text.find("running"), std::string::npos) << text;
-  EXPECT_NE(text.find("  y  not measured"), std::string::npos) << text;
+  EXPECT_TRUE(ifog::test::has(text, "running"));
+  EXPECT_TRUE(ifog::test::has(text, "  y  not measured"));
   for (int second = 0; second < 6; ++second) view.end_interval(1.0);
   text = joined(view_lines("NOSE", view, {}));
-  EXPECT_EQ(text.find("running"), std::string::npos) << text;
-  EXPECT_EQ(text.find("nothing lost"), std::string::npos) << text;
-  EXPECT_NE(text.find("no message for 6 s"), std::string::npos) << text;
+  EXPECT_FALSE(ifog::test::has(text, "running")) << text;
+  EXPECT_FALSE(ifog::test::has(text, "nothing lost")) << text;
+  EXPECT_TRUE(ifog::test::has(text, "no message for 6 s"));
 }
 
 TEST(MonitorView, FlagsAndLossesInWords) {
@@ -105,13 +95,13 @@ TEST(MonitorView, FlagsAndLossesInWords) {
   std::string text = joined(view_lines("NOSE", view, {}));
   for (const char* part :
        {"at rest 1", "channel stale 1", "lost on LCM 3", "frames with a wrong checksum 7", "  rate  "})
-    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+    EXPECT_TRUE(ifog::test::has(text, part)) << part << " is not in\n" << text;
   view.forget_losses();
   health.frames_crc = 9;
   view.take(health);
   text = joined(view_lines("NOSE", view, {}));
-  EXPECT_EQ(text.find("lost on LCM"), std::string::npos) << text;
-  EXPECT_NE(text.find("frames with a wrong checksum 2"), std::string::npos) << text;
+  EXPECT_FALSE(ifog::test::has(text, "lost on LCM")) << text;
+  EXPECT_TRUE(ifog::test::has(text, "frames with a wrong checksum 2"));
 }
 
 TEST(MonitorView, NoLineIsWiderThanTheScreen) {
@@ -129,12 +119,12 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
       for (const auto& [line, tone] : lines) {
         const bool cut = line.find("angle") != std::string::npos;
         EXPECT_LE(report::characters_in(line), cut ? width : std::max<std::size_t>(width, 95)) << line;
-        EXPECT_EQ(line.find('\x1b'), std::string::npos);
+        EXPECT_FALSE(ifog::test::has(line, "\x1b"));
       }
     }
   const auto wide = view_lines("NOSE", view, {200, true, RateUnit::automatic});
-  EXPECT_NE(wide[1].text.find("▁"), std::string::npos);
-  EXPECT_NE(wide[1].text.find("█"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(wide[1].text, "▁"));
+  EXPECT_TRUE(ifog::test::has(wide[1].text, "█"));
 }
 
 // Rates without the statuses that belong to them: what the last one said is not of now.
@@ -147,9 +137,9 @@ TEST(MonitorView, AnOldStatusIsNotShownWithNewRates) {
   }
   const auto lines = view_lines("NOSE", view, {});
   const std::string text = joined(lines);
-  EXPECT_TRUE(has(text, "no status for 4 s")) << text;
+  EXPECT_TRUE(test::has(text, "no status for 4 s")) << text;
   for (const char* old : {"running", "nothing lost", "fault", "NIS", "books", "coil_degC"})
-    EXPECT_FALSE(has(text, old)) << old << " is in\n" << text;
+    EXPECT_FALSE(test::has(text, old)) << old << " is in\n" << text;
   EXPECT_EQ(lines[0].tone, Tone::warning);
 }
 
@@ -165,7 +155,7 @@ TEST(MonitorJson, EveryFieldByTheNameOfItsType) {
   EXPECT_EQ(json["raw"][0], 1.5);
   EXPECT_TRUE(json["raw"][1].is_null());
   const std::string line = message_json("NOSE", status_message());
-  EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_FALSE(ifog::test::has(line, "\n"));
   const auto health = nlohmann::json::parse(line);
   EXPECT_EQ(health["state_name"], "running");
   EXPECT_EQ(health["channel_name"][1], "supply_V");

@@ -4,9 +4,8 @@
 // is held against it.
 #pragma once
 
-#include <cmath>
-
 #include "filters/population/two_groups.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random effects against a published analysis, robust distances and shrinkage against closed forms.
 #include "filters/population/population.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-
 #include "filters/population/shrinkage.h"
 #include "filters/population/type_effects.h"
 #include "tests/unit/population/one_coefficient.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

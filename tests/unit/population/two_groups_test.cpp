@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two-group model against closed forms, against integration by numbers, and on drawn populations.
 #include "filters/population/two_groups.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "filters/population/population.h"
 #include "tests/unit/population/one_coefficient.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -164,47 +156,25 @@ TEST(TwoGroups, IntervalsOfAFewMembersHoldTheTruth) {
   EXPECT_LT(inside_likeliest, inside);
 }
 
-TEST(JudgedEffect, FoundInThoseThatHaveItAndNotInTheOthers) {
-  std::mt19937 random(21);
+// Each gyro's own estimate, judged with the others'.
+TypeEffect judged(const std::vector<Estimate>& own) {
   TypeEffect effect;
   effect.effect.parameters = {{"coefficient", 0.0, 0.0, "rad/s"}};
-  std::vector<bool> has;
-  std::size_t of_them = 0, found = 0, false_alarms = 0;
-  for (int round = 0; round < 8; ++round) {
-    const Drawn drawn = population(random, 200, prior_of(0.5, 6.0, 0.6));
-    effect.gyros.clear();
-    for (std::size_t i = 0; i < drawn.estimates.size(); ++i) {
-      EffectInGyro each;
-      each.gyro = i;
-      each.own = drawn.estimates[i];
-      effect.gyros.push_back(each);
-    }
-    judge(effect, 0.01);
-    EXPECT_TRUE(is_of_type(effect.prior, 0.01));
-    for (std::size_t i = 0; i < drawn.has.size(); ++i) {
-      of_them += drawn.has[i] ? 1 : 0;
-      found += drawn.has[i] && effect.gyros[i].found ? 1 : 0;
-      false_alarms += !drawn.has[i] && effect.gyros[i].found ? 1 : 0;
-    }
-  }
-  // Errors of 0.7 to 1.3: effects of 4.6 to 8.6 of them.
-  EXPECT_GE(static_cast<double>(found), 0.95 * static_cast<double>(of_them));
-  EXPECT_LE(static_cast<double>(false_alarms), 0.01 * static_cast<double>(1600 - of_them));
+  for (std::size_t i = 0; i < own.size(); ++i)
+    effect.gyros.emplace_back().gyro = i, effect.gyros[i].own = own[i];
+  judge(effect, 0.01);
+  return effect;
 }
 
 // Seven alike and one of seven times as much: it is named as standing out, and is not the type's spread.
 TEST(JudgedEffect, OneFarOutIsNotTheSpreadOfTheType) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  TypeEffect effect;
-  effect.effect.parameters = {{"coefficient", 0.0, 0.0, "rad/s"}};
-  for (std::size_t i = 0; i < 8; ++i) {
-    EffectInGyro each;
-    each.gyro = i;
-    each.own = Estimate{(i == 4 ? 41.0 : 6.0) + 0.4 * normal(random), 0.4};
-    effect.gyros.push_back(each);
-  }
-  judge(effect, 0.01);
+  test::Noise noise(5, 0.4);
+  const auto gyros = [&](std::size_t count, const auto& coefficient) {
+    std::vector<Estimate> own;
+    for (std::size_t i = 0; i < count; ++i) own.push_back({coefficient(i) + noise(), 0.4});
+    return judged(own);
+  };
+  const TypeEffect effect = gyros(8, [](std::size_t i) { return i == 4 ? 41.0 : 6.0; });
   EXPECT_EQ(effect.set_aside, 1U);
   EXPECT_NEAR(effect.prior.mean, 6.0, 0.5);
   EXPECT_LT(effect.prior.spread, 1.0);
@@ -212,15 +182,7 @@ TEST(JudgedEffect, OneFarOutIsNotTheSpreadOfTheType) {
   // And it is not pulled to what the others have: by less than its own error.
   EXPECT_NEAR(shrunk(effect.gyros[4].others, *effect.gyros[4].own).value, effect.gyros[4].own->value, 0.4);
   // A few that have it among many that have not are no such members.
-  TypeEffect few = effect;
-  few.gyros.clear();
-  for (std::size_t i = 0; i < 12; ++i) {
-    EffectInGyro each;
-    each.gyro = i;
-    each.own = Estimate{(i < 3 ? 6.0 : 0.0) + 0.4 * normal(random), 0.4};
-    few.gyros.push_back(each);
-  }
-  judge(few, 0.01);
+  const TypeEffect few = gyros(12, [](std::size_t i) { return i < 3 ? 6.0 : 0.0; });
   EXPECT_EQ(few.set_aside, 0U);
   EXPECT_EQ(few.found, 3U);
 }

@@ -2,17 +2,8 @@
 // Oracles: ordinary least squares in closed form where the noise is white, and how often the intervals hold
 // the truth that was put in.
 #include "filters/promise/promise.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
-
 #include "filters/promise/running_trial.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -27,15 +18,14 @@ struct Made {
 
 // before = bias + share * d + noise, d a slow swing of `swing`.
 Made made(std::size_t n, double share, double swing, double walk, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   Made out;
   double level = 7.0;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = static_cast<double>(i) * kPeriod_s;
     const double d = swing * std::sin(2.0 * std::numbers::pi * t / 400.0);
-    level += walk * normal(random);
-    const double e = level + share * d + normal(random);
+    level += walk * normal();
+    const double e = level + share * d + normal();
     out.time_s.push_back(t);
     out.before.push_back(e);
     out.after.push_back(e - d);

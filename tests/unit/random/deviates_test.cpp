@@ -2,16 +2,9 @@
 // Our logarithm and exponential against the C library's in extended precision; the deviates against the
 // moments of their laws.
 #include "filters/random/deviates.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "filters/random/log_exp.h"
 #include "filters/random/philox.h"
+#include "tests/unit/test.h"
 
 namespace {
 

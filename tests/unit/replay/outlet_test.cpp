@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `ifog replay` does when the system has no room: the system is a stand-in that answers as told.
-#include "tools/ifog/replay/replay_target.h"
-
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdint>
-#include <cstdlib>
-#include <deque>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
-
 #include "drivers/flight/archive.h"
 #include "drivers/transport/clock.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
+#include "tools/ifog/replay/replay_target.h"
 
 namespace ifog::tools {
 namespace {

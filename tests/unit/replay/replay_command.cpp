@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `ifog replay` alone, the program that its tests run where they are built with sanitizers: all of ifog would
 // be compiled for this one command.
-#include <array>
-
+#include "tests/unit/test.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 

@@ -2,26 +2,15 @@
 // `ifog replay` as a user runs it, and the two small parts it is made of. How late it is, is measured beside
 // canplayer in tests/bench/replay; here nothing may come early or be lost.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <csignal>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <thread>
-#include <vector>
 
 #include "daemon/sensor/duration_histogram.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -165,7 +154,7 @@ TEST_F(Replay, SendsRawBytesInBlocks) {
   ASSERT_EQ(ifog(path("gyro.bin") + " --block 100 --rate 1000 --to file:" + path("again.bin")), 0)
       << content("out");
   EXPECT_EQ(content("again.bin"), bytes);
-  EXPECT_NE(content("out").find("sent 11 blocks"), std::string::npos) << content("out");
+  EXPECT_TRUE(ifog::test::has(content("out"), "sent 11 blocks"));
   EXPECT_EQ(ifog(path("gyro.bin") + " --to file:" + path("x")), 1);
   EXPECT_EQ(content("out"),
             "ifog: " + path("gyro.bin") +
@@ -185,7 +174,7 @@ TEST_F(Replay, EncodesACaptureAndCutsBytesByTheDriver) {
   ASSERT_EQ(ifog(path("gyro.kvh") + " --driver kvh1750 --option format=b --to file:" + path("again.kvh")), 0)
       << content("out");
   EXPECT_EQ(content("again.kvh"), content("gyro.kvh"));
-  EXPECT_NE(content("out").find("sent 50 blocks"), std::string::npos) << content("out");
+  EXPECT_TRUE(ifog::test::has(content("out"), "sent 50 blocks"));
   EXPECT_EQ(ifog(path("gyro.csv") + " --to file:" + path("x")), 1);
 }
 
@@ -219,13 +208,13 @@ TEST_F(Replay, AnInterruptedWaitForAReaderIsSaid) {
   // A second signal, where the first came before the wait, ends it by itself.
   if (WIFSIGNALED(status)) return;
   EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_NE(content("out").find("interrupted before anything was sent"), std::string::npos) << content("out");
+  EXPECT_TRUE(ifog::test::has(content("out"), "interrupted before anything was sent"));
 }
 
 // What was collected to be written together and then not taken has not been sent.
 TEST_F(Replay, WhatTheTargetDidNotTakeIsNotSaidToBeSent) {
   EXPECT_EQ(ifog(log() + " --speed 0 --loop 5 --to file:/dev/full --json " + path("report.json")), 1);
-  EXPECT_NE(content("out").find("failed: sent 0 of 500 frames in "), std::string::npos) << content("out");
+  EXPECT_TRUE(ifog::test::has(content("out"), "failed: sent 0 of 500 frames in "));
   const auto report = nlohmann::json::parse(content("report.json"));
   EXPECT_EQ(report["sent"], 0);
   EXPECT_EQ(report["of"], 500);
@@ -241,9 +230,9 @@ TEST_F(Replay, AReaderThatGoesAwayIsAFailureWithAReport) {
   });
   EXPECT_EQ(ifog(log() + " --loop 0 --to fifo:" + path("fifo")), 1);
   reader.join();
-  EXPECT_NE(content("out").find("fifo: the reader went away"), std::string::npos) << content("out");
-  EXPECT_NE(content("out").find("failed: sent "), std::string::npos) << content("out");
-  EXPECT_NE(content("out").find("lateness p50"), std::string::npos) << content("out");
+  EXPECT_TRUE(ifog::test::has(content("out"), "fifo: the reader went away"));
+  EXPECT_TRUE(ifog::test::has(content("out"), "failed: sent "));
+  EXPECT_TRUE(ifog::test::has(content("out"), "lateness p50"));
 }
 
 TEST_F(Replay, WrongUseIsTwoWhatCannotBeSentIsOne) {

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers at a picture's axes: read as what stands there, each another than its neighbour, none over
 // another, whatever the range.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <regex>
-#include <string>
-#include <vector>
 
+#include "tests/unit/test.h"
 #include "tools/report/chart.h"
 #include "tools/report/coefficients.h"
 #include "tools/report/pages/fleet_page.h"
@@ -105,8 +99,8 @@ TEST(AxisNumbers, ARangeWithoutDoublesInItEnds) {
     Chart chart("t", "d", {"x", false, at, std::nextafter(at, 1e300)}, {"y", false, at, at});
     chart.line(Role::kAfter, "", {at}, {at});
     const std::string svg = chart.svg();
-    EXPECT_EQ(svg.find("nan"), std::string::npos) << at;
-    EXPECT_EQ(svg.find("inf"), std::string::npos) << at;
+    EXPECT_FALSE(ifog::test::has(svg, "nan")) << at;
+    EXPECT_FALSE(ifog::test::has(svg, "inf")) << at;
     EXPECT_LT(svg.size(), 20000U) << at;
   }
 }
@@ -154,8 +148,8 @@ TEST(Coefficients, ATermIsToldWithItsErrorOrItsBound) {
   found.N = {true, 2.9088820866572159e-4, 2.9088820866572159e-6, 3e-4, 9.0};  // 1 °/√h and a hundredth of it
   found.B.upper = 4.8481368110953599e-6;                                      // 1 °/h
   const std::string lines = ifog::report::coefficient_lines(found);
-  EXPECT_NE(lines.find("1 ± 0.01"), std::string::npos) << lines;
-  EXPECT_NE(lines.find("not seen; below 1 °/h\n"), std::string::npos) << lines;
+  EXPECT_TRUE(ifog::test::has(lines, "1 ± 0.01"));
+  EXPECT_TRUE(ifog::test::has(lines, "not seen; below 1 °/h\n"));
   const auto json = ifog::report::coefficients_json(found);
   EXPECT_TRUE(json["N"]["present"]);
   EXPECT_FALSE(json["K"]["present"]);
@@ -198,8 +192,6 @@ Population example() {
   return p;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST(FleetPage, SaysWhatTheTypeHasWhoStandsOutAndWhoFailed) {
   const Population population = example();
   FleetPage page;
@@ -208,15 +200,16 @@ TEST(FleetPage, SaysWhatTheTypeHasWhoStandsOutAndWhoFailed) {
   page.command = "ifog fleet 'a<b.toml'";
   const std::string html = fleet_page(page);
   for (const char* id : {"account", "failed", "effects", "parameters", "standing-out", "gyros", "origin"})
-    EXPECT_TRUE(has(html, "<h2 id=\"" + std::string(id) + "\">")) << id;
-  EXPECT_FALSE(has(html, "<h2 id=\"own\">"));  // nothing to say
-  EXPECT_TRUE(has(html, "found in 4 gyros by themselves, in 11 of 12 with what the type says"));
-  EXPECT_TRUE(has(html, "<a href=\"gyros/G11/report.html\">G11</a></th><td>N</td>"));
-  EXPECT_TRUE(has(html, "12 of 13 gyros have a result"));
+    EXPECT_TRUE(test::has(html, "<h2 id=\"" + std::string(id) + "\">")) << id;
+  EXPECT_FALSE(test::has(html, "<h2 id=\"own\">"));  // nothing to say
+  EXPECT_TRUE(test::has(html, "found in 4 gyros by themselves, in 11 of 12 with what the type says"));
+  EXPECT_TRUE(test::has(html, "<a href=\"gyros/G11/report.html\">G11</a></th><td>N</td>"));
+  EXPECT_TRUE(test::has(html, "12 of 13 gyros have a result"));
   // What files say is text.
-  EXPECT_TRUE(has(html, "T&lt;1&gt;") && has(html, "no &lt;such&gt; file") && has(html, "a&lt;b.toml"));
-  EXPECT_TRUE(has(html, "Bias by temperature &amp; more."));
-  EXPECT_FALSE(has(html, "T<1>") || has(html, "no <such>") || has(html, "a<b.toml"));
+  EXPECT_TRUE(test::has(html, "T&lt;1&gt;") && test::has(html, "no &lt;such&gt; file") &&
+              test::has(html, "a&lt;b.toml"));
+  EXPECT_TRUE(test::has(html, "Bias by temperature &amp; more."));
+  EXPECT_FALSE(test::has(html, "T<1>") || test::has(html, "no <such>") || test::has(html, "a<b.toml"));
 }
 
 }  // namespace

@@ -3,13 +3,9 @@
 // feedback ramp; filled in by hand, so that the page is tested without the search.
 #pragma once
 
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "filters/diagnosis/diagnose.h"
 #include "filters/random/philox.h"
+#include "tests/unit/test.h"
 
 namespace ifog::example {
 

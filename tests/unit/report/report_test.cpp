@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <regex>
-#include <stdexcept>
 
-#include "tests/unit/own_folder.h"
 #include "tests/unit/report/example.h"
+#include "tests/unit/test.h"
 #include "tools/report/chart.h"
 #include "tools/report/pages/diagnosis_page.h"
 #include "tools/report/pages/diagnosis_pictures.h"
@@ -87,8 +79,8 @@ TEST(ReportChart, DenseCurvesKeepTheirExtremes) {
   Chart flat("t", "d", {"x", false, {}, {}}, {"y", false, 0.0, 1.0});
   flat.line(Role::kAfter, "", x, std::vector<double>(100000, 0.5));
   chart.line(Role::kAfter, "", x, y);
-  EXPECT_NE(chart.svg().find("V34.0"), std::string::npos);  // the plot's upper edge
-  EXPECT_EQ(flat.svg().find("V34.0L"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(chart.svg(), "V34.0"));  // the plot's upper edge
+  EXPECT_FALSE(ifog::test::has(flat.svg(), "V34.0L"));
   EXPECT_LT(chart.svg().size(), 60000U);
 }
 
@@ -96,8 +88,8 @@ TEST(ReportChart, GapsAndImpossibleValuesAreLeftOut) {
   Chart chart("t", "d", {"x", true, {}, {}}, {"y", true, {}, {}});
   chart.line(Role::kAfter, "a", {-1.0, 1.0, 2.0, 3.0}, {1.0, 0.0, std::nan(""), 4.0});
   EXPECT_FALSE(chart.empty());
-  EXPECT_EQ(chart.svg().find("nan"), std::string::npos);
-  EXPECT_EQ(chart.svg().find("inf"), std::string::npos);
+  EXPECT_FALSE(ifog::test::has(chart.svg(), "nan"));
+  EXPECT_FALSE(ifog::test::has(chart.svg(), "inf"));
   Chart nothing("t", "d", {"x", true, {}, {}}, {"y", true, {}, {}});
   EXPECT_EQ(nothing.svg(), "");
 }
@@ -173,7 +165,7 @@ TEST(ReportPicture, SvgAndPngByTheName) {
       picture_svg("title \x07 & more", {{200.0, {{chart}, {chart, 2.0}}}, {100.0, {{chart}}}}, 600.0);
   EXPECT_EQ(svg.find("var("), std::string::npos) << "librsvg knows no variables";
   for (const char c : svg) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n');
-  EXPECT_NE(svg.find("a &lt;b&gt; &amp; \\x1b[31m \\xff"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(svg, "a &lt;b&gt; &amp; \\x1b[31m \\xff"));
   const ifog::test::OwnFolder folder;
   write_picture(folder.path("picture.svg"), svg);
   EXPECT_EQ(folder.content("picture.svg"), svg);
@@ -233,18 +225,18 @@ TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
                            "What remains", "Applying it", "ifog denoise", "RMS of 10 s means",
                            "bench &amp; co", "&lt;2 pi reset&gt;", "A capture with faster changes", "τ",
                            "serial: 17 &lt;b&gt;", "a &amp; b.html", "cccccccc", "class=\"band after\""})
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-  EXPECT_EQ(html.find("<i>"), std::string::npos);
+    EXPECT_TRUE(ifog::test::has(html, part)) << part;
+  EXPECT_FALSE(ifog::test::has(html, "<i>"));
   EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=\"(?!#|data:,)")));
   // One script, in the page, that asks nobody for anything; numbers packed for it are no text.
   EXPECT_EQ(count_of(html, "<script"), 1U);
   for (const char* part : {"url(", "fetch(", "XMLHttp", "import", "WebSocket", "sendBeacon", "eval("})
-    EXPECT_EQ(html.find(part), std::string::npos) << part;
+    EXPECT_FALSE(ifog::test::has(html, part)) << part;
   std::string shown = html;
   for (std::size_t at = shown.find("data-plot=\""); at != std::string::npos;
        at = shown.find("data-plot=\"", at + 1))
     shown.erase(at + 11, shown.find('"', at + 11) - at - 11);
-  EXPECT_EQ(shown.find("nan"), std::string::npos);
+  EXPECT_FALSE(ifog::test::has(shown, "nan"));
   EXPECT_LT(html.size(), 2'000'000U);
   // For the browser's test.
   if (const char* path = std::getenv("IFOG_REPORT_OUTPUT")) std::ofstream(path) << html;
@@ -257,9 +249,9 @@ TEST(ReportPage, NothingFoundIsAResult) {
   e.diagnosis.indistinguishable.clear();
   e.diagnosis.unexplained = {};
   const std::string html = page_of(e);
-  EXPECT_NE(html.find("Nothing was found"), std::string::npos);
-  EXPECT_NE(html.find("Nothing more is found"), std::string::npos);
-  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_TRUE(ifog::test::has(html, "Nothing was found"));
+  EXPECT_TRUE(ifog::test::has(html, "Nothing more is found"));
+  EXPECT_FALSE(ifog::test::has(html, "nan"));
 }
 
 }  // namespace

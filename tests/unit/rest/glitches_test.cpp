@@ -1,18 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/rest/glitches.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <random>
-#include <span>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include "filters/rest/cleaned_rate.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace ifog {
@@ -39,7 +28,7 @@ TEST(Glitches, ASampleThatLeapsAwayAndBackIsFound) {
   EXPECT_EQ(found.first, 12345U);
   EXPECT_NEAR(found.most_times, 1e5, 3e3);
   const std::string said = in_words(found, time_s);
-  EXPECT_NE(said.find("2 samples leap away and back (the first at 123.45 s"), std::string::npos) << said;
+  EXPECT_TRUE(test::has(said, "2 samples leap away and back (the first at 123.45 s"));
   EXPECT_EQ(find_glitches(rate, std::vector<Stretch>{{0, 12000}}).count, 0U);
 }
 
@@ -51,7 +40,7 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   rate[16384] = -5.0;  // where a piece begins
   const Glitches found = glitches_in(rate);
   EXPECT_EQ(found.count, 3U);
-  EXPECT_NE(in_words(found, time_s).find("dropped"), std::string::npos);
+  EXPECT_TRUE(test::has(in_words(found, time_s), "dropped"));
   const auto without = [&](const std::vector<double>& from) {
     std::vector<ValueFault> faults;
     return without_leaps(from, from, std::vector<Stretch>{{0, from.size()}}, time_s, faults);
@@ -72,7 +61,7 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   EXPECT_GT(many.count, 21U);
   EXPECT_TRUE(many.few.empty());
   EXPECT_FALSE(without(rate));
-  EXPECT_NE(in_words(many, time_s).find("take for noise"), std::string::npos);
+  EXPECT_TRUE(test::has(in_words(many, time_s), "take for noise"));
 }
 
 // A placeholder for some samples, full scale at a record's start (PicoQuake, car_vibration.csv): as far from the noise as
@@ -125,7 +114,7 @@ TEST(Glitches, SinglePlaceholdersAreOutHoweverOftenTheyStand) {
     leave_out_repeats(rate, time_s, faults);
     ASSERT_EQ(faults.size(), times > 1 ? 1U : 0U);
     for (const ValueFault& fault : faults)
-      EXPECT_NE(fault.text.find("samples leap away and back (the first at 0 s"), std::string::npos);
+      EXPECT_TRUE(test::has(fault.text, "samples leap away and back (the first at 0 s"));
     for (const std::size_t at : {std::size_t{0}, 3 * times - 3}) EXPECT_EQ(std::isnan(rate[at]), times > 1);
     EXPECT_EQ(rate[19000], 3.0);
   }

@@ -2,15 +2,7 @@
 // A stretch that was made louder or quieter is found where it is, as loud as it was made and at its
 // frequencies; noise of every kind that stays the same is not said to change.
 #include "filters/rest/noise_change.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
-
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -62,17 +54,16 @@ TEST(NoiseChange, AQuietAndALoudStretchAreWhereTheyAreAndAsLoudAsTheyAre) {
   EXPECT_NEAR(found[1].to_s, 1713.0, kTime_s);
   EXPECT_NEAR(found[1].times, 5.0, 1.0);
   EXPECT_DOUBLE_EQ(found[1].range_hz.high, 0.5 * kRate_hz);
-  EXPECT_NE(ifog::in_words(found).find("times the noise in 16"), std::string::npos) << ifog::in_words(found);
+  EXPECT_TRUE(ifog::test::has(ifog::in_words(found), "times the noise in 16"));
 }
 
 // Sway of 0.05 to 0.5 Hz in white noise: the frequencies above stay as they are.
 TEST(NoiseChange, OnlyTheFrequenciesThatChangedAreNamed) {
   std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 180'000, 13);
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(17);
   double sway = 0.0;
   for (std::size_t i = 60'000; i < 80'000; ++i) {
-    sway += -0.01 * sway + 2e-5 * normal(random);
+    sway += -0.01 * sway + 2e-5 * normal();
     rate[i] += sway;
   }
   const std::vector<NoiseChange> found = changes_of(rate);
@@ -136,7 +127,7 @@ TEST(NoiseChange, AHeldStartIsSaidToStandStillAndHidesNothing) {
         EXPECT_EQ(found.front().times, 0.0);
         EXPECT_EQ(found.front().from_s, 0.0);
         EXPECT_NEAR(found.front().to_s, held_s, 1.01 / kRate_hz);
-        EXPECT_NE(ifog::in_words(found).find("it stands still in 0 …"), std::string::npos);
+        EXPECT_TRUE(ifog::test::has(ifog::in_words(found), "it stands still in 0 …"));
       }
     }
   }

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motion that was put into a record is found where it is, and noise of every kind is not mistaken for it.
 #include "filters/rest/rest.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <span>
-#include <stdexcept>
-#include <vector>
-
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/capture/read_capture.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -131,9 +122,8 @@ TEST(Rest, SlowTurnsStayInAndAreSaid) {
   EXPECT_EQ(rest.slow_turns.count, 4U);
   EXPECT_NEAR(static_cast<double>(rest.slow_turns.first) / kRate, 100.0, 11.0);
   EXPECT_NEAR(rest.slow_turns.largest_radps, 4.85e-4, 2e-5);
-  EXPECT_NE(ifog::slow_turns_in_words(rest, 1.0 / kRate, 0.0).find("leaps by up to 100 °/h, 4 times"),
-            std::string::npos)
-      << ifog::slow_turns_in_words(rest, 1.0 / kRate, 0.0);
+  EXPECT_TRUE(
+      ifog::test::has(ifog::slow_turns_in_words(rest, 1.0 / kRate, 0.0), "leaps by up to 100 °/h, 4 times"));
 }
 
 // Dwells of a table without a reference, a row in 16 s.
@@ -223,8 +213,7 @@ TEST(Rest, AHandTurnedGyroIsRefused) {
   record.name = "hand-turned";
   record.time_s = capture.time_s;
   record.rate_radps = capture.rate_radps[0];
-  EXPECT_NE(ifog::test::refusal([&] { (void)ifog::diagnose({record}, {}); }).find("turned"),
-            std::string::npos);
+  EXPECT_TRUE(ifog::test::has(ifog::test::refusal([&] { (void)ifog::diagnose({record}, {}); }), "turned"));
 }
 
 }  // namespace

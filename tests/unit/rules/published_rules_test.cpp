@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules against a straight transcription, for a scalar random walk, of the equations they were published
 // with.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <random>
-
 #include "filters/estimator/estimator.h"
-#include "filters/random/deviates.h"
 #include "filters/rules/rule.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -20,13 +14,12 @@ constexpr double kR = 1.0;
 constexpr int kWindow = 40;
 
 std::vector<double> measurements() {
-  std::mt19937_64 random(17);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(17);
   std::vector<double> z(600);
   double x = 4.0;
   for (std::size_t k = 0; k < z.size(); ++k) {
-    x += std::sqrt(kQ) * normal(random);
-    z[k] = x + (k < 300 ? 1.0 : 3.0) * normal(random);  // noise that grows, so that adapting matters
+    x += std::sqrt(kQ) * normal();
+    z[k] = x + (k < 300 ? 1.0 : 3.0) * normal();  // noise that grows, so that adapting matters
   }
   return z;
 }
@@ -172,41 +165,9 @@ TEST(PublishedEquations, MultipleModelsByTheirLikelihood) {
   expect_equal("mmae", published, first_variance);
 }
 
-TEST(Rules, AreAllMadeByName) {
-  for (const char* name : {"ckf", "irwe-akfg", "iae", "rae", "mmae", "sage-husa", "vb"}) {
-    ifog::FilterSettings settings;
-    settings.rule = name;
-    settings.process_noise = settings.measurement_noise = 1.0;
-    EXPECT_NE(ifog::make_rule(settings), nullptr) << name;
-  }
-  EXPECT_EQ(ifog::rules().size(), 7U);
-}
-
-// The random weights against the moments of the Dirichlet law, and the variance of the covariance they
-// estimate against what follows from it: for independent innovations whose square has variance t^2, a plain
-// window of n has t^2 / n, one Dirichlet draw t^2 E(sum w^2) = 2 t^2 / (n + 1), B draws t^2 (1/n + (2/(n+1) -
-// 1/n) / B).
-
-TEST(DirichletWeights, HaveTheLawsMoments) {
-  constexpr std::size_t kN = 5;
-  constexpr int kDraws = 400'000;
-  const ifog::DeviateStream stream(11, 0, ifog::DeviateStream::Law::kExponential);
-  std::array<double, kN> e{};
-  double mean = 0.0, square = 0.0, product = 0.0;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    stream.fill(static_cast<std::uint64_t>(draw), 0, e);
-    double sum = 0.0;
-    for (const double v : e) sum += v;
-    mean += e[0] / sum;
-    square += (e[0] / sum) * (e[0] / sum);
-    product += (e[0] / sum) * (e[1] / sum);
-  }
-  const double n = kN;
-  mean /= kDraws;
-  EXPECT_NEAR(mean, 1 / n, 0.002 / n);
-  EXPECT_NEAR(square / kDraws - mean * mean, (n - 1) / (n * n * (n + 1)), 0.01 * (n - 1) / (n * n * (n + 1)));
-  EXPECT_NEAR(product / kDraws - mean * mean, -1 / (n * n * (n + 1)), 0.05 / (n * n * (n + 1)));
-}
+// The variance of the covariance that random weights estimate against what follows from the Dirichlet law: for
+// independent innovations whose square has variance t^2, a plain window of n has t^2 / n, one draw
+// t^2 E(sum w^2) = 2 t^2 / (n + 1), B draws t^2 (1/n + (2/(n+1) - 1/n) / B).
 
 struct Spread {
   double mean = 0.0, variance = 0.0;
@@ -222,15 +183,14 @@ Spread spread(const char* rule_name, const char* weights, int draws, int window)
   settings.floor = 0.0;
   settings.process_noise = settings.measurement_noise = 1.0;
   const auto rule = ifog::make_rule(settings);
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(3);
   constexpr int kWindows = 40'000;
   double sum = 0.0, squares = 0.0;
   std::uint64_t sequence = 0;
   for (int w = 0; w < kWindows; ++w) {
     double c = 0.0;
     for (int i = 0; i < window; ++i) {
-      const double innovation = normal(random);
+      const double innovation = normal();
       c = rule->innovation_covariance({0.0, 1.0, {&innovation, 1}, sequence++, 0});
     }
     sum += c;

@@ -1,27 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every row of the table of filter settings, asked of the configuration, the model file and the command line
 // at and next to the ends of its range: what one accepts the others accept, as the same value.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <fstream>
-#include <limits>
-#include <optional>
-#include <set>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <type_traits>
-#include <variant>
-#include <vector>
-
 #include "daemon/config/config.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
+#include "tests/unit/test.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/options/filter_options.h"
 
@@ -292,7 +276,7 @@ TEST(FilterTable, TheExampleShowsIt) {
       const std::size_t line = text.str().find("\n  " + std::string(setting.key) + " = ");
       ASSERT_NE(line, std::string::npos) << setting.key;
       const std::string row = text.str().substr(line + 1, text.str().find('\n', line + 1) - line - 1);
-      EXPECT_NE(row.find(expected(setting)), std::string::npos) << row << " lacks: " << expected(setting);
+      EXPECT_TRUE(ifog::test::has(row, expected(setting))) << row << " lacks: " << expected(setting);
     }
   }
   shown.erase("start_up_s");  // of the daemon, not of the filter

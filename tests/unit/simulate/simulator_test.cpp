@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulate/simulator.h"
-
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-#include <vector>
-
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tools/simulate/draw.h"
 #include "tools/simulate/noise.h"
+#include "tools/simulate/simulator.h"
 
 namespace {
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of the CAN transport can be seen without a kernel that has CAN: the two forms of a frame, and the
 // refusals. The rest runs on vcan in tests/system.
-#include "drivers/transport/can/can.h"
-
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
@@ -12,14 +9,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <string>
-#include <thread>
-
+#include "drivers/transport/can/can.h"
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/clock.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
 
 namespace {

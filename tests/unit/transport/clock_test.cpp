@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/clock.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <vector>
-
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/transport.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

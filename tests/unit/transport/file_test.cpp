@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/transport/file/file.h"
-#include "drivers/transport/clock.h"
-
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <thread>
-
 #include "drivers/capture/files/output_file.h"
+#include "drivers/transport/clock.h"
 #include "drivers/transport/file/byte_file.h"
+#include "drivers/transport/file/file.h"
 #include "drivers/transport/sole_reader.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
 
 namespace {
@@ -186,8 +177,7 @@ TEST_F(FileTransport, AnIdThatComesOnTwoInterfacesEndsIt) {
   EXPECT_EQ(transport->reason(), 0);
   EXPECT_EQ(transport->fault().line, 4U);
   EXPECT_EQ(transport->fault().text, "vcan0 and vcan1");
-  EXPECT_NE(std::string(transport->fault().what).find("expected sensor.transport.interface"),
-            std::string::npos);
+  EXPECT_TRUE(ifog::test::has(std::string(transport->fault().what), "expected sensor.transport.interface"));
   for (const auto& [interface, first] : {std::pair{"vcan0", 1}, {"vcan1", 3}}) {
     settings_.interface = interface;
     const auto one = opened();

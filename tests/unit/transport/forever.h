@@ -2,12 +2,9 @@
 // What several transports' tests read with. A wait of kForever is over only when what is waited for has come.
 #pragma once
 
-#include <chrono>
-#include <cstddef>
-#include <string>
-
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/transport.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -3,16 +3,12 @@
 #pragma once
 
 #include <arpa/inet.h>
-#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cstdint>
-#include <cstring>
-#include <string>
-
 #include "drivers/transport/network/udp.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 
@@ -76,10 +72,21 @@ class LoopbackSocket {
   int family_, fd_;
 };
 
-inline bool loopback_has_v6() {
-  LoopbackSocket probe(AF_INET6, SOCK_DGRAM);
-  return probe.fd() >= 0 && probe.bind(0);
-}
+// Of IPv4 and of IPv6, where the loopback has that.
+class BothFamilies : public testing::TestWithParam<int> {
+ public:
+  static std::string name(const testing::TestParamInfo<int>& family) {
+    return family.param == AF_INET ? "IPv4" : "IPv6";
+  }
+
+ protected:
+  void SetUp() override {
+    LoopbackSocket probe(GetParam(), SOCK_DGRAM);
+    if (probe.fd() < 0 || !probe.bind(0))
+      GTEST_SKIP() << "the loopback has no IPv6 here; sysctl net.ipv6.conf.lo.disable_ipv6=0 gives it one";
+  }
+  static const char* address() { return GetParam() == AF_INET ? "127.0.0.1" : "::1"; }
+};
 
 // A port that was free a moment ago.
 inline std::uint16_t free_port(int family, int type) {

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A call that waits for bytes ends when another thread wishes it, at whichever moment of the way into the call.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <atomic>
-#include <chrono>
-#include <random>
-#include <string>
-#include <thread>
 
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/udp.h"
 #include "drivers/transport/stoppable_wait.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 

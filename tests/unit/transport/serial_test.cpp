@@ -1,53 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 // The serial transport over a pseudo terminal in the place of the line: libserialport itself takes none (no
 // modem lines), it is tried in tests/system on an emulated UART and a USB adapter that is pulled out.
-#include "drivers/transport/serial/serial.h"
-
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <map>
-#include <mutex>
-#include <thread>
-
 #include "drivers/transport/clock.h"
+#include "drivers/transport/serial/serial.h"
 #include "drivers/transport/sole_reader.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/terminal.h"
 
+namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
-using ifog::Gyro;
-using ifog::kForever;
-using ifog::read_some;
-using ifog::SerialSettings;
-using ifog::TransportState;
 
 SerialSettings settings() { return {.device = "gyro", .baud = 921600}; }
 
 TEST(SerialTransport, DeliversEveryByteWithItsArrival) {
   Gyro gyro;
-  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  const auto transport = make_serial_transport(settings(), gyro.opener());
   transport->open({});
   EXPECT_EQ(transport->notices().take_warning(), "no low latency");
   EXPECT_EQ(transport->notices().take_warning(), "");
   EXPECT_FALSE(transport->holds_back());
   std::string all;
   for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
-  const std::int64_t before = ifog::realtime_ns();
+  const std::int64_t before = realtime_ns();
   gyro.send(all);
-  const ifog::Delivery d = transport->read(kForever);
+  const Delivery d = transport->read(kForever);
   EXPECT_GE(d.arrival_ns, before);
-  EXPECT_LE(d.arrival_ns, ifog::realtime_ns());
+  EXPECT_LE(d.arrival_ns, realtime_ns());
   std::string seen(d.bytes.begin(), d.bytes.end());
   if (seen.size() < all.size()) seen += read_some(*transport, all.size() - seen.size());
   EXPECT_EQ(seen, all);
@@ -58,7 +45,7 @@ TEST(SerialTransport, DeliversEveryByteWithItsArrival) {
 
 TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
   Gyro gyro;
-  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  const auto transport = make_serial_transport(settings(), gyro.opener());
   const std::string opening = "=rate\r";
   transport->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
   EXPECT_EQ(gyro.receive(opening.size()), opening);
@@ -86,7 +73,7 @@ TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
 TEST(SerialTransport, LossesUpToTheHangUpAndTheStopAreCounted) {
   Gyro gyro;
   gyro.errors = {.lost = 0xFFFFFFFEU, .damaged = 7};
-  const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+  const auto transport = make_serial_transport(settings(), gyro.opener());
   transport->open({});
   gyro.send("0");
   EXPECT_EQ(read_some(*transport, 1), "0");
@@ -112,7 +99,7 @@ TEST(SerialTransport, LossesUpToTheHangUpAndTheStopAreCounted) {
 TEST(SerialTransport, StopEndsTheWaitForBytesAndTheWaitForTheDevice) {
   for (const bool there : {true, false}) {
     Gyro gyro;
-    const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+    const auto transport = make_serial_transport(settings(), gyro.opener());
     transport->open({});
     if (!there) {
       gyro.pull();
@@ -122,9 +109,9 @@ TEST(SerialTransport, StopEndsTheWaitForBytesAndTheWaitForTheDevice) {
       std::this_thread::sleep_for(20ms);
       transport->stop();
     });
-    const std::int64_t begin = ifog::monotonic_ns();
+    const std::int64_t begin = monotonic_ns();
     EXPECT_TRUE(transport->read(kForever).empty());
-    EXPECT_LT(ifog::monotonic_ns() - begin, 30'000'000'000) << "half of kForever";
+    EXPECT_LT(monotonic_ns() - begin, 30'000'000'000) << "half of kForever";
     stopper.join();
   }
 }
@@ -134,7 +121,7 @@ TEST(SerialTransport, AnOpeningThatCannotBeSentIsAFailure) {
   ASSERT_EQ(pipe2(fds, O_NONBLOCK), 0);
   close(fds[1]);
   // A descriptor that may only be read.
-  class ReadOnly final : public ifog::SerialPort {
+  class ReadOnly final : public SerialPort {
    public:
     explicit ReadOnly(int fd) : fd_(fd) {}
     [[nodiscard]] int fd() const override { return fd_; }
@@ -142,10 +129,10 @@ TEST(SerialTransport, AnOpeningThatCannotBeSentIsAFailure) {
    private:
     int fd_;
   };
-  const auto transport = ifog::make_serial_transport(
+  const auto transport = make_serial_transport(
       settings(), [&](const SerialSettings&, std::string&) { return std::make_unique<ReadOnly>(fds[0]); });
   const std::uint8_t byte = 'x';
-  EXPECT_EQ(ifog::test::refusal([&] {
+  EXPECT_EQ(test::refusal([&] {
               transport->open({&byte, 1});
             }),
             "gyro: cannot send the opening bytes: Bad file descriptor, expected a device that takes them");
@@ -153,7 +140,7 @@ TEST(SerialTransport, AnOpeningThatCannotBeSentIsAFailure) {
 }
 
 std::string refusal(const SerialSettings& s) {
-  return ifog::test::refusal([&] { ifog::make_serial_transport(s)->open({}); });
+  return test::refusal([&] { make_serial_transport(s)->open({}); });
 }
 
 TEST(SerialTransport, RefusesInOneLine) {
@@ -164,12 +151,12 @@ TEST(SerialTransport, RefusesInOneLine) {
 
 // What the port asks for on whatever line it has opened.
 TEST(SerialTransport, ALineIsOneReaders) {
-  const int master = ifog::open_line();
+  const int master = open_line();
   const auto line = [&] { return open(ptsname(master), O_RDWR | O_NOCTTY | O_CLOEXEC); };
   const int first = line(), second = line();
-  ifog::SoleReader one, other;
+  SoleReader one, other;
   one.take(first, "gyro");
-  EXPECT_THROW(other.take(second, "gyro"), ifog::DeviceInUse);
+  EXPECT_THROW(other.take(second, "gyro"), DeviceInUse);
   const pid_t child = fork();  // has the descriptors, too
   if (child == 0) pause();
   one.release();
@@ -180,11 +167,6 @@ TEST(SerialTransport, ALineIsOneReaders) {
   close(second);
   close(master);
 }
-
-}  // namespace
-
-namespace ifog {
-namespace {
 
 // A gyro that is set up by lines of text, as KVH's manual says that it answers them, over a pseudo terminal.
 
@@ -332,7 +314,7 @@ TEST_F(SetUpByLines, WhatHadNoPowerIsSetUpAgain) {
   EXPECT_EQ(transport_->state(), TransportState::gone);
   imu_.answer("=OUTPUTFMT,B", "OUTPUTFMT,B");
   EXPECT_TRUE(reads_until([&] { return transport_->state() == TransportState::open; }));
-  EXPECT_NE(transport_->notices().take_answers().find("OUTPUTFMT,B"), std::string::npos);
+  EXPECT_TRUE(test::has(transport_->notices().take_answers(), "OUTPUTFMT,B"));
   EXPECT_EQ(transport_->counters().reopened, 1U);
 }
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arrival clock while NTP slews the system's clocks, and over a sleep of the machine. This program's
 // clocks are its own: it is linked with --wrap=clock_gettime.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <ctime>
-
 #include "drivers/transport/clock.h"
+#include "tests/unit/test.h"
 
 namespace {
 

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The TCP transport on the loopback, with a sensor that listens, closes, is taken and is not there.
-#include "drivers/transport/network/tcp.h"
-#include "drivers/transport/clock.h"
-
-#include <gtest/gtest.h>
 #include <poll.h>
 
-#include <atomic>
-#include <cerrno>
-#include <string>
-#include <thread>
-
-#include "tests/unit/refusal.h"
+#include "drivers/transport/clock.h"
+#include "drivers/transport/network/tcp.h"
+#include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 
@@ -98,22 +91,15 @@ TEST(TcpServer, WhichSpeaksTelnetIsRecognised) {
   std::size_t came = 0;
   while (came < 40 * frame.size()) came += transport->read(kForever).bytes.size();
   ASSERT_NE(transport->fault().what, nullptr);
-  EXPECT_NE(std::string(transport->fault().what).find("telnet"), std::string::npos);
+  EXPECT_TRUE(test::has(std::string(transport->fault().what), "telnet"));
 }
 
-class Tcp : public testing::TestWithParam<int> {
+class Tcp : public BothFamilies {
  protected:
-  void SetUp() override {
-    if (GetParam() == AF_INET6 && !loopback_has_v6())
-      GTEST_SKIP() << "the loopback has no IPv6 here; sysctl net.ipv6.conf.lo.disable_ipv6=0 gives it one";
-  }
-  [[nodiscard]] static TcpSettings at(std::uint16_t port) {
-    return {.host = GetParam() == AF_INET ? "127.0.0.1" : "::1", .port = port};
-  }
+  [[nodiscard]] static TcpSettings at(std::uint16_t port) { return {.host = address(), .port = port}; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Families, Tcp, testing::Values(AF_INET, AF_INET6),
-                         [](const auto& family) { return family.param == AF_INET ? "IPv4" : "IPv6"; });
+INSTANTIATE_TEST_SUITE_P(Families, Tcp, testing::Values(AF_INET, AF_INET6), BothFamilies::name);
 
 TEST_P(Tcp, DeliversEveryByteWithTheKernelsTime) {
   Server gyro(GetParam());
@@ -164,9 +150,8 @@ TEST_P(Tcp, ConnectsAgainWhenTheOtherEndCloses) {
 TEST_P(Tcp, ADeviceThatIsNotThereYetIsAwaited) {
   const std::uint16_t port = free_port(GetParam(), SOCK_STREAM);
   const auto transport = make_tcp_transport(at(port));
-  EXPECT_NE(
-      test::refusal([&] { transport->open({}); }).find("expected a device or server that listens there"),
-      std::string::npos);
+  EXPECT_TRUE(test::has(test::refusal([&] { transport->open({}); }),
+                        "expected a device or server that listens there"));
   EXPECT_EQ(transport->reason(), ECONNREFUSED);
   EXPECT_TRUE(transport->read(30ms).empty());
   EXPECT_EQ(transport->state(), TransportState::gone);

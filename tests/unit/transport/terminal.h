@@ -3,19 +3,12 @@
 #pragma once
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cerrno>
-#include <cstdlib>
-#include <memory>
-#include <string>
-
 #include "drivers/transport/serial/serial.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/tune/choice.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "filters/estimator/estimator.h"
 #include "filters/kalman/likelihood.h"
 #include "filters/state_models/state_model.h"
 #include "tests/unit/estimator/drive.h"
+#include "tests/unit/test.h"
 
 namespace {
 
@@ -24,14 +16,13 @@ struct Record {
 };
 
 Record walk_under_white_noise(unsigned seed, std::size_t samples, double ratio) {
-  std::mt19937_64 engine(seed);
-  std::normal_distribution<double> normal;
+  ifog::test::Noise normal(seed);
   Record out;
   double level = 3e-5;
   for (std::size_t k = 0; k < samples; ++k) {
-    level += std::sqrt(ratio) * kSigma * normal(engine);
+    level += std::sqrt(ratio) * kSigma * normal();
     out.level.push_back(level);
-    out.rate.push_back(level + kSigma * normal(engine));
+    out.rate.push_back(level + kSigma * normal());
   }
   return out;
 }

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/tune/tune.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "filters/kalman/likelihood.h"
 #include "filters/tune/spectrum.h"
+#include "tests/unit/test.h"
 
 namespace {
 

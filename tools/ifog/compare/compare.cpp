@@ -81,7 +81,7 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   Walk walk;
   double quietest = 0.0, ratio = kMostRatio;
   const auto take = [&](std::size_t begin, std::size_t end) {
-    walk.break_off();
+    walk.gap();
     for (std::size_t i = begin; i < end; ++i) {
       Axes rate{};
       std::uint32_t valid = 0;

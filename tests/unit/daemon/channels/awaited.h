@@ -2,11 +2,9 @@
 // What has come of a channel, waited for.
 #pragma once
 
-#include <chrono>
-#include <thread>
-
 #include "daemon/channels/channel_sources.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels without a new value are reported by name, with the place they should come from and the reason.
 #include "daemon/channels/channel_watch.h"
-
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-
 #include "daemon/sensor/facts.h"
 #include "filters/chain/incrementer.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

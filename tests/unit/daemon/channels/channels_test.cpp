@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Environment channels from a file or another CAN frame.
-#include "daemon/channels/channel_sources.h"
-
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <thread>
-
 #include "daemon/channels/can_channel.h"
+#include "daemon/channels/channel_sources.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"
-#include "tests/unit/own_folder.h"
-#include "tests/unit/refusal.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Environment channels from LCM messages.
-#include <gtest/gtest.h>
 #include <ifog/decode.h>
 #include <lcm/lcm.h>
-
-#include <chrono>
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
 
 #include "daemon/channels/channel_sources.h"
 #include "daemon/channels/lcm_field.h"
@@ -19,6 +9,7 @@
 #include "tests/unit/daemon/channels/awaited.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/messages.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

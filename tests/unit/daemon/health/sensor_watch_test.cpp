@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the daemon notices of a sensor. Oracles: the law that a test's threshold is derived from, and what was
 // put into the samples.
-#include "daemon/health/sensor_watch.h"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <memory>
-#include <numbers>
-#include <random>
 #include <regex>
-#include <utility>
 
+#include "daemon/health/sensor_watch.h"
 #include "daemon/health/sequential_tests.h"
 #include "daemon/health/step_test.h"
-#include "filters/chain/signal_chain.h"
-#include "tests/unit/sanitized.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -152,7 +142,7 @@ TEST(SensorWatch, NoticesAChannelOutsideTheRangeForLong) {
   made.out_of_range = true;
   made.run(20.0 * kMinute);
   EXPECT_EQ(made.watch.noticed(), kNoticedRange);
-  EXPECT_NE(made.watch.words().find("range of the model"), std::string::npos);
+  EXPECT_TRUE(test::has(made.watch.words(), "range of the model"));
   made.watch.renew();
   EXPECT_EQ(made.watch.noticed(), 0);
 }
@@ -165,63 +155,6 @@ TEST(SensorWatch, AnotherModelIsLearnedAnew) {
   made.rate += 5.0 * kSigma;
   made.run(3.0 * kHour);
   EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
-}
-
-// The same through the filter that runs in the daemon: what it calls rest, and the innovations it publishes.
-class Chained {
- public:
-  static constexpr double kHz = 20.0;
-  Chained() : watch(1, kHz) {
-    ChainSettings settings;
-    settings.facts.axes = 1;
-    settings.facts.nominal_rate_hz = kHz;
-    settings.axes = {""};
-    chain_ = std::make_unique<SignalChain>(std::make_unique<ChainParts>(settings));
-  }
-  void run(double seconds) {
-    for (int second = 0; second < static_cast<int>(seconds); ++second) {
-      for (int i = 0; i < static_cast<int>(kHz); ++i) {
-        in_.sequence = samples_++;
-        in_.dt_s = in_.covered_s[0] = 1.0 / kHz;
-        in_.valid_axes = 1;
-        in_.rate_radps[0] = rate + sigma * normal_(random_);
-        in_.delta_theta_rad[0] = in_.rate_radps[0] * in_.dt_s;
-        chain_->process(in_, out_);
-        sums_.add(0, (out_.estimate.flags & kAtRest) != 0, out_.compensated_radps[0],
-                  out_.estimate.innovation_radps[0]);
-      }
-      watch.take(sums_, samples_, 0);
-    }
-  }
-  SensorWatch watch;
-  double sigma = kSigma, rate = 3e-5;
-
- private:
-  std::mt19937_64 random_{11};
-  std::normal_distribution<double> normal_;
-  std::unique_ptr<SignalChain> chain_;
-  Increment in_;
-  ChainOutput out_;
-  RestSums sums_;
-  std::uint64_t samples_ = 0;
-};
-
-TEST(SensorWatch, NoticesThroughTheFilterWhatChangesAndNothingElse) {
-  Chained louder, stepped;
-  louder.run(4.0 * kHour);
-  EXPECT_EQ(louder.watch.noticed(), 0) << louder.watch.words();
-  louder.sigma *= std::sqrt(2.0);
-  louder.run(10.0 * kMinute);
-  EXPECT_EQ(louder.watch.noticed(), kNoticedNoise) << louder.watch.words();
-  stepped.run(4.0 * kHour);
-  stepped.rate += 0.25 * kSigma;  // of ten-second means over three standard deviations
-  stepped.run(10.0 * kMinute);
-  EXPECT_EQ(stepped.watch.noticed(), kNoticedBias) << stepped.watch.words();
-  // Large enough for the filter to take it for a change of rate.
-  stepped.run(3.0 * kHour);
-  stepped.rate -= 3.0 * kSigma;
-  stepped.run(10.0 * kMinute);
-  EXPECT_EQ(stepped.watch.noticed(), kNoticedBias) << stepped.watch.words();
 }
 
 // How long a white series takes to alarm, on average, in blocks.
@@ -272,11 +205,10 @@ TEST(StepTest, AlarmsNoMoreOftenThanItIsAllowedTo) {
 TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
   const double threshold = std::log(1000.0);
   const double follows = mean_time_to_alarm(200, [&](unsigned seed) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
+    test::Noise normal(seed);
     ColourCusum test(threshold);
     double n = 0.0;
-    while (!test.alarmed()) test.take(normal(random)), n += 1.0;
+    while (!test.alarmed()) test.take(normal()), n += 1.0;
     return n;
   });
   EXPECT_GT(follows, 1000.0);

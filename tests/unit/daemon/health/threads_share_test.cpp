@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/pipeline/processor_share.h"
-
-#include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <numeric>
-#include <thread>
-#include <vector>
-
 #include "daemon/health/counted_rate.h"
+#include "daemon/pipeline/processor_share.h"
 #include "daemon/realtime/thread_watch.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {

@@ -2,12 +2,9 @@
 // The daemon as it runs, its flight recorder on, a sensor at the other end of a FIFO and a subscriber.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "filters/model_file/kept_noise.h"
 #include "tests/unit/daemon/running_daemon.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 

@@ -5,9 +5,8 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include <utility>
-
 #include "tests/unit/daemon/recorder/recorded_flight.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -54,7 +53,7 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   const auto reload = [&](const std::string& expected) {
     kill(child_, SIGHUP);
     for (int n = 0; n < 600 && said().find(expected) == std::string::npos; ++n) listen(20);
-    EXPECT_NE(said().find(expected), std::string::npos) << said();
+    EXPECT_TRUE(test::has(said(), expected));
     // New parts are in use from the next delivery on: the next one at the latest.
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   };
@@ -104,7 +103,7 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   EXPECT_TRUE(corrected);
   // Every command reads it as a capture, the channel from elsewhere among its columns.
   ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
-  EXPECT_NE(content("capture.csv").substr(0, 200).find("supply_V"), std::string::npos);
+  EXPECT_TRUE(test::has(content("capture.csv").substr(0, 200), "supply_V"));
   EXPECT_EQ(rows_of("capture.csv").size(), published().size());
   EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
   // And it is sent again as it came, to the bit.
@@ -117,9 +116,8 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   ASSERT_EQ(files.size(), 4U);
   fs::remove(files.front());
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
-  EXPECT_NE(complaint_.find("from 0 s on, until the filter has settled, this need not be what was published"),
-            std::string::npos)
-      << complaint_;
+  EXPECT_TRUE(test::has(complaint_,
+                        "from 0 s on, until the filter has settled, this need not be what was published"));
 }
 
 // A timer that runs it must see that it failed.
@@ -127,26 +125,25 @@ TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
   configure();
   const std::string night = "night --config " + path("ifogd.toml");
   EXPECT_NE(ifog(night), 0);  // no state folder
-  EXPECT_NE(complaint_.find("expected the daemon's state folder"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "expected the daemon's state folder"));
   fs::create_directories(path("state"));
   EXPECT_EQ(ifog(night), 0) << complaint_;  // nothing is recorded yet
   write("state/nose.night.json", "{");
   EXPECT_NE(ifog(night), 0);
-  EXPECT_NE(complaint_.find("nose.night.json: is no JSON object"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "nose.night.json: is no JSON object"));
   write("state/nose.night.json", "{\"schema\": \"ifog.night/1\"}");
   EXPECT_NE(ifog(night), 0);
-  EXPECT_NE(complaint_.find("nose.night.json: damaged: key 'sensor' not found"), std::string::npos)
-      << complaint_;
-  EXPECT_EQ(complaint_.find("json.exception"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "nose.night.json: damaged: key 'sensor' not found"));
+  EXPECT_FALSE(test::has(complaint_, "json.exception")) << complaint_;
   fs::remove(path("state/nose.night.json"));
   fs::create_directories(path("record/nose"));
   write("record/nose/00000001-20260101T000000Z.ifr", "junk");
   EXPECT_NE(ifog(night), 0);
-  EXPECT_NE(complaint_.find("is no flight recording"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "is no flight recording"));
   fs::remove_all(path("record/nose"));
   write("record/nose", "a file");
   EXPECT_NE(ifog(night), 0);
-  EXPECT_NE(complaint_.find("record/nose: cannot read"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "record/nose: cannot read"));
 }
 
 // All settings of the configuration: where the drivers are, too.
@@ -185,7 +182,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
   EXPECT_EQ(content("again"), sent_);
-  EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
+  EXPECT_TRUE(test::has(complaint_, "without an end"));
   published().clear();
   start();
   ASSERT_TRUE(send_and_await(500)) << said();
@@ -197,8 +194,8 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
        {"denoise " + path("record/nose") + " --output " + path("denoised.csv"),
         "convert " + path("record/nose") + " " + path("capture.csv"), "allan " + path("record/nose")}) {
     EXPECT_EQ(ifog(command), 0) << complaint_;
-    EXPECT_NE(complaint_.find("1 run(s) of what wrote it were cut off"), std::string::npos) << complaint_;
-    EXPECT_NE(complaint_.find("2 runs of what wrote it, with "), std::string::npos) << complaint_;
+    EXPECT_TRUE(test::has(complaint_, "1 run(s) of what wrote it were cut off"));
+    EXPECT_TRUE(test::has(complaint_, "2 runs of what wrote it, with "));
   }
   EXPECT_NE(rows_of("denoised.csv").size(), 0U);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
@@ -242,12 +239,9 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
             0)
       << complaint_;
   EXPECT_EQ(rows_of("denoised.csv").size(), published().size() + merged);
-  EXPECT_NE(complaint_.find(": " + std::to_string(merged) + " samples, the first about 0."),
-            std::string::npos)
-      << complaint_;
-  EXPECT_NE(complaint_.find("were published as one with others (the ring was full)"), std::string::npos)
-      << complaint_;
-  EXPECT_NE(content("denoised.json").find("\"merged\": " + std::to_string(merged) + ","), std::string::npos);
+  EXPECT_TRUE(test::has(complaint_, ": " + std::to_string(merged) + " samples, the first about 0."));
+  EXPECT_TRUE(test::has(complaint_, "were published as one with others (the ring was full)"));
+  EXPECT_TRUE(test::has(content("denoised.json"), "\"merged\": " + std::to_string(merged) + ","));
   // Until the first of them, every row is what was published.
   const auto rows = rows_of("denoised.csv");
   for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published()[n].denoised[0]) << n;
@@ -286,7 +280,7 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   EXPECT_EQ(status, 0);
   ASSERT_EQ(ifog("convert " + path("heard") + " " + path("capture.csv")), 0) << complaint_;
   const std::string capture = content("capture.csv");
-  EXPECT_NE(capture.substr(0, 200).find("supply_V"), std::string::npos) << capture.substr(0, 200);
+  EXPECT_TRUE(test::has(capture.substr(0, 200), "supply_V"));
   const auto rows = rows_of("capture.csv");
   ASSERT_EQ(rows.size(), published().size());
   for (std::size_t n = 0; n < rows.size(); ++n) ASSERT_EQ(rows[n][1], published()[n].raw[0]) << n;

@@ -2,13 +2,6 @@
 // The flight recorder in the daemon: what the reader thread puts on the tape, and what the recorder makes of
 // it.
 #include "daemon/recorder/recorder.h"
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "daemon/sensor/flight_header.h"
 #include "drivers/flight/decode.h"
 #include "drivers/host/driver_instance.h"
@@ -16,7 +9,7 @@
 #include "tests/unit/daemon/delivered.h"
 #include "tests/unit/daemon/rig.h"
 #include "tests/unit/flight/recordings.h"
-#include "tests/unit/own_folder.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -236,7 +229,7 @@ TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
   }
   bool good = false;
   const std::string message = recorder.take_message(good);
-  EXPECT_NE(message.find("the recording in work has been removed"), std::string::npos) << message;
+  EXPECT_TRUE(test::has(message, "the recording in work has been removed"));
   EXPECT_GE(recorder.lost_deliveries(), 7U);
   EXPECT_EQ(recorder.lost_bytes(), 3 * recorder.lost_deliveries());
 }

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the reader thread puts on the tape, and what comes off it.
-#include "daemon/recorder/tape.h"
-
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
-#include <cstring>
-#include <thread>
-
+#include "daemon/recorder/tape.h"
 #include "drivers/flight/decode.h"
 #include "tests/unit/daemon/delivered.h"
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -20,6 +15,7 @@ using namespace std::chrono_literals;
 
 struct Taken {
   std::vector<FlightEntryHead> heads;
+  std::vector<FlightKind> kinds;
   std::vector<std::vector<std::uint8_t>> payloads;
 };
 
@@ -29,6 +25,7 @@ Taken all_of(Tape& tape) {
   std::vector<std::uint8_t> payload;
   while (tape.take(head, payload)) {
     out.heads.push_back(head);
+    out.kinds.push_back(head.kind);
     out.payloads.push_back(payload);
   }
   return out;
@@ -46,11 +43,9 @@ TEST(Tape, ChannelsAndTheWallClockAreRecordedWhenTheyChange) {
   channels[1].value = 13.0;  // set between the reading of its time and of its value
   tape.put(delivery(bytes, 0), 51, channels, 5);
   const Taken taken = all_of(tape);
-  std::vector<FlightKind> kinds;
-  for (const FlightEntryHead& head : taken.heads) kinds.push_back(head.kind);
   using K = FlightKind;
-  EXPECT_EQ(kinds, (std::vector<K>{K::bytes, K::channel, K::bytes, K::wall, K::bytes, K::bytes, K::channel,
-                                   K::bytes}));
+  EXPECT_EQ(taken.kinds, (std::vector<K>{K::bytes, K::channel, K::bytes, K::wall, K::bytes, K::bytes,
+                                         K::channel, K::bytes}));
   EXPECT_EQ(taken.heads[1].time_ns, 9);
   EXPECT_EQ(taken.heads[1].index, 1);
   EXPECT_EQ(taken.heads[5].flags, 0);
@@ -67,10 +62,8 @@ TEST(Tape, WhatWasMergedIsSaidBeforeTheDeliveryItWasSeenAt) {
     tape.put(delivery(bytes, 10), 11, {}, 0, total);
   }
   const Taken taken = all_of(tape);
-  std::vector<FlightKind> kinds;
-  for (const FlightEntryHead& head : taken.heads) kinds.push_back(head.kind);
   using K = FlightKind;
-  ASSERT_EQ(kinds, (std::vector<K>{K::bytes, K::merged, K::bytes, K::bytes, K::merged, K::bytes}));
+  ASSERT_EQ(taken.kinds, (std::vector<K>{K::bytes, K::merged, K::bytes, K::bytes, K::merged, K::bytes}));
   EXPECT_EQ(taken.payloads[1], (std::vector<std::uint8_t>{3, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(taken.payloads[4], (std::vector<std::uint8_t>{4, 0, 0, 0, 0, 0, 0, 0}));
 }

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/ramp/ramps_out.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "filters/diagnosis/ramp/ramp.h"
 #include "filters/effects/compensator.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
+#include "tests/unit/test.h"
 
 namespace ifog {
 namespace {
@@ -27,8 +21,7 @@ struct Capture {
 };
 
 Capture capture(std::uint64_t seed, std::size_t n, double turning, double nonlinearity) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
+  test::Noise normal(seed);
   const auto angle = [&](double ramp) { return nonlinearity * std::sin(2.0 * M_PI * ramp / kPeriod); };
   Capture out;
   double position = 100.0, before = angle(position);
@@ -39,7 +32,7 @@ Capture capture(std::uint64_t seed, std::size_t n, double turning, double nonlin
     out.ramp.push_back(std::floor(position));
     out.temperature.push_back(25.0 + std::sin(static_cast<double>(i) / 500.0));
     out.made.push_back((now - before) / kStep_s);
-    out.rate.push_back(turning + kNoise * normal(random) + out.made.back());
+    out.rate.push_back(turning + kNoise * normal() + out.made.back());
     before = now;
   }
   return out;
