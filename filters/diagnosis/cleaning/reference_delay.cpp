@@ -89,8 +89,8 @@ LateBy with_growth(const Record& record, double period_s, LateBy late_by) {
     };
     const ReferenceDelay first = delay_in(0.0, 0.5), second = delay_in(0.5, 1.0);
     const double more_s = second.delay_s - first.delay_s;
-    if (std::abs(more_s) < std::max(period_s, kCertain * std::hypot(first.std_error_s, second.std_error_s)))
-      break;
+    const double certain_s = kCertain * std::hypot(first.std_error_s, second.std_error_s);
+    if (std::abs(more_s) <= std::max(late_by.growth == 0.0 ? period_s : 0.0, certain_s)) break;
     // The halves' delays are those of their middles.
     late_by.growth += more_s / half_s;
     late_by.start_s += first.delay_s - 0.5 * more_s;

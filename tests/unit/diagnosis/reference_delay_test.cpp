@@ -71,6 +71,27 @@ TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
   }
 }
 
+// Two loggers whose crystals differ: at the end the reference is 0.3 s later than at first.
+TEST(ReferenceDelay, GrowsIfTheClocksRunApart) {
+  constexpr double kGrowth = 5e-4;
+  const double end_s = kStep_s * static_cast<double>(kSamples);
+  for (const double start_s : {0.4, -0.15}) {
+    Logged logged(8, 0.0);
+    test::Noise normal(9);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      const double t = logged.time[i];
+      logged.reference[i] = turning(t - start_s - kGrowth * t) + 1e-4 * normal();
+    }
+    const OwnedRecords aligned = align_references(std::vector{logged.record});
+    ASSERT_EQ(aligned.remarks.size(), 1U);
+    EXPECT_TRUE(test::has(aligned.remarks[0], "ppm more as time passes")) << aligned.remarks[0];
+    const auto margin = static_cast<std::size_t>((std::abs(start_s) + kGrowth * end_s) / kStep_s) + 2;
+    for (std::size_t i = margin; i + margin < kSamples; ++i)
+      ASSERT_NEAR(aligned.records[0].reference_radps[i], turning(logged.time[i]), 2e-3)
+          << start_s << ' ' << i;
+  }
+}
+
 // Noise that grows with the frequency, as of a reference differentiated from angles, hides the motion from a filter
 // that whitens the rate, and is smoothed by a shift of half a sample, which a fit takes for a better one.
 TEST(ReferenceDelay, IsFoundWithAReferenceDifferentiatedFromNoisyAngles) {
