@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "filters/linear/least_squares.h"
@@ -16,6 +17,8 @@ constexpr double kCertainlyOff = 4.0;  // standard errors
 constexpr double kVisible = 5.0;       // standard deviations of the prediction
 constexpr double kUncertain = 0.2;     // largest uncertainty relative to the square of the prediction
 constexpr double kMoves = 1e-6;        // smallest square of the regressors in the others, relative to here
+constexpr double kAsMuch = 0.25;       // smallest square of the regressors here, relative to all others
+constexpr double kUnseen = 9.0;        // twice the log-likelihood gained by the common law
 
 struct Split {
   Columns columns;         // measurement, other effects, the group in other records, the group in this one
@@ -82,6 +85,21 @@ bool prediction_fails(const Whitened& of, DeniedEffects& found) {
   return found.share + kCertainlyOff * found.share_error < 0.5;
 }
 
+// True if the others show the effect and this record does not although its regressors vary as much.
+bool unseen_though_moved(const Whitened& of, DeniedEffects& found) {
+  for (Eigen::Index k = 0; k < of.here.cols(); ++k)
+    if (of.here.col(k).squaredNorm() < kAsMuch * of.others.col(k).squaredNorm()) return false;
+  const Eigen::MatrixXd all = of.others + of.here;
+  const Eigen::VectorXd c = LeastSquares(all).coefficients(of.error);
+  const auto gain = [&](const Eigen::MatrixXd& columns) {
+    const Eigen::VectorXd taken = columns * c;
+    return taken.dot(2.0 * of.error - taken) / of.variance;
+  };
+  if (gain(of.others) < kVisible * kVisible || gain(of.here) > kUnseen) return false;
+  found.share = std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
 // Effects connected to effect `at` by shared channels, directly or indirectly.
 std::vector<std::size_t> one_law(const std::vector<Candidate>& effects, std::size_t at) {
   const auto of_a_channel = [](const Candidate& each) {
@@ -117,7 +135,7 @@ std::optional<DeniedEffects> denied_by_a_capture(const BlockData& data, const st
     for (std::size_t r = 0; r < records; ++r) {
       const Whitened of = whitened(data.grid, split_at(data, effects, group, r), noise);
       DeniedEffects found{group, r, 0.0, 0.0};
-      if (prediction_fails(of, found)) return found;
+      if (prediction_fails(of, found) || unseen_though_moved(of, found)) return found;
     }
   }
   return std::nullopt;

@@ -41,9 +41,11 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
                             const std::vector<Record>& records) {
   std::string words;
   for (const Effect& effect : effects) words += (words.empty() ? "" : " and ") + name_of(effect);
-  words += formatted(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
-                     denied.share_error) +
-           records[denied.record].name;
+  words += std::isfinite(denied.share)
+               ? formatted(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
+                           denied.share_error) +
+                     records[denied.record].name
+               : ": nothing of it is seen in " + records[denied.record].name + ", where as much moved";
   return words + ", so that is no effect of this channel but of something that ran with it, dropped";
 }
 
