@@ -127,7 +127,7 @@ class Reader {
     for (const Message& m : out_.database.messages)
       for (const Signal& s : m.signals) all.push_back({&m, &s});
     // A file of a whole car has thousands; angular rates come first.
-    std::ranges::stable_partition(all, [&](const Pick& each) {
+    std::stable_partition(all.begin(), all.end(), [&](const Pick& each) {
       return angle_unit(each.signal->unit, out_.kind == IFOG_RATE, false).has_value();
     });
     for (const Pick& each : all) {
