@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "filters/diagnosis/cleaning/steps.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -91,6 +92,10 @@ OwnedRecords with_readings_alone(OwnedRecords given) {
             held_for(record.reference_radps, kLongestReference_s / period_s)) {
       keep_rows(record, readings_of(record.reference_radps, *each), given.columns);
       tell(record.reference_name, *each);
+      given.remarks.back() += formatted(
+          ". So few samples make the angle random walk N up to %.2g times too large, and the predicted "
+          "heading error",
+          std::sqrt(static_cast<double>(*each)));
     }
     for (RecordChannel& channel : record.channels) {
       const std::optional<std::size_t> each = held_for(channel.values, kLongestChannel_s / period_s);

@@ -102,9 +102,10 @@ std::string in_words(const ReferenceDelay& delay, const LateBy& late_by, const s
   const double late = delay.delay_s;
   if (late_by.growth != 0.0)
     return name + formatted(
-                      " logged %.4g s late at first, and by %.3g ppm more as time passes: the clocks of two "
-                      "loggers run apart; shifted",
-                      late_by.start_s, 1e6 * late_by.growth);
+                      ": its clock runs %.4g ppm %s than that of the rate, and it is %.4g s %s at the start: "
+                      "shifted",
+                      1e6 * std::abs(late_by.growth), late_by.growth > 0.0 ? "faster" : "slower",
+                      std::abs(late_by.start_s), late_by.start_s > 0.0 ? "late" : "early");
   return name + formatted(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
                           late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
 }

@@ -84,7 +84,7 @@ TEST(ReferenceDelay, GrowsIfTheClocksRunApart) {
     }
     const OwnedRecords aligned = align_references(std::vector{logged.record});
     ASSERT_EQ(aligned.remarks.size(), 1U);
-    EXPECT_TRUE(test::has(aligned.remarks[0], "ppm more as time passes")) << aligned.remarks[0];
+    EXPECT_TRUE(test::has(aligned.remarks[0], " ppm faster than that of the rate")) << aligned.remarks[0];
     const auto margin = static_cast<std::size_t>((std::abs(start_s) + kGrowth * end_s) / kStep_s) + 2;
     for (std::size_t i = margin; i + margin < kSamples; ++i)
       ASSERT_NEAR(aligned.records[0].reference_radps[i], turning(logged.time[i]), 2e-3)
