@@ -98,7 +98,8 @@ std::vector<double> some_steps(std::span<const double> time_s, std::size_t strid
   return some;
 }
 
-// An even clock whose stamps are late: the least delay of 512 stamps is the same as that of the 512 before.
+// An even clock whose stamps are late: the least delay of 512 stamps (fewer in a short record) is the same as that of those
+// before.
 struct EvenClock {
   double period_s = 0.0;
   // In periods: usual and largest difference of these least delays, and by how much a stamp usually exceeds them.
@@ -117,26 +118,34 @@ struct EvenClock {
   }
 };
 
+// Mean of the values within half a period of this one: of the differences without lost samples.
+double mean_near(const std::vector<double>& values, double place) {
+  double sum = 0.0, count = 0.0;
+  for (const double value : values)
+    if (std::abs(value - place) < 0.5) sum += value, count += 1.0;
+  return sum / count;
+}
+
 EvenClock even_clock(std::span<const double> time_s) {
-  constexpr std::size_t kStamps = 512, kFewest = 8;
-  const std::size_t windows = time_s.size() / kStamps, last = windows * kStamps - 1;
+  constexpr std::size_t kFewest = 64, kMost = 512, kWindows = 32, kFewestWindows = 8;
+  const std::size_t stamps = std::clamp(time_s.size() / kWindows, kFewest, kMost);
+  const std::size_t windows = time_s.size() / stamps, last = windows * stamps - 1;
   EvenClock clock{.late = std::numeric_limits<double>::infinity()};
-  if (windows < kFewest) return clock;
+  if (windows < kFewestWindows) return clock;
   clock.period_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
-  std::vector<double> least, late, delays(kStamps);
-  for (int round = 0; round < 3; ++round) {
+  std::vector<double> least, late, delays(stamps);
+  for (int round = 0; round < 4; ++round) {
     least.clear(), late.clear();
-    for (std::size_t begin = 0; begin < last; begin += kStamps) {
-      const std::span<const double> stamps = time_s.subspan(begin, kStamps);
-      for (std::size_t i = 0; i < kStamps; ++i)
-        delays[i] = (stamps[i] - time_s[0]) / clock.period_s - static_cast<double>(begin + i);
+    for (std::size_t begin = 0; begin < last; begin += stamps) {
+      for (std::size_t i = 0; i < stamps; ++i)
+        delays[i] = (time_s[begin + i] - time_s[0]) / clock.period_s - static_cast<double>(begin + i);
       least.push_back(*std::ranges::min_element(delays));
       late.push_back(median(delays) - least.back());
     }
     for (std::size_t i = 0; i + 1 < windows; ++i) least[i] = least[i + 1] - least[i];
     least.pop_back();
-    const double drift = median(least);
-    clock.period_s *= 1.0 + drift / static_cast<double>(kStamps);
+    const double drift = mean_near(least, median(least));
+    clock.period_s *= 1.0 + drift / static_cast<double>(stamps);
     for (double& each : least) each = std::abs(each - drift);
   }
   clock.usual = median(least);
@@ -162,7 +171,6 @@ SampleClock sample_clock(std::span<const double> time_s) {
     for (double& step : away) step = std::abs(step - period_s);
     return 1.4826 * median(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
   };
-  // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
   const EvenClock even = steps.gapless(period) ? EvenClock{} : even_clock(time_s);
   std::ranges::nth_element(some, some.begin() + std::ssize(some) / 10);
   if (even.period_s > 0.0 && even.explains(some[some.size() / 10])) {
@@ -174,8 +182,8 @@ SampleClock sample_clock(std::span<const double> time_s) {
       period = steps.gapless(period) ? (time_s.back() - time_s.front()) / static_cast<double>(count)
                                      : mean_period(time_s, period, false);
     clock.scatter = scatter(period);
+    for (int round = 0; clock.scatters() && round < 3; ++round) period = mean_period(time_s, period, true);
   }
-  for (int round = 0; clock.scatters() && round < 3; ++round) period = mean_period(time_s, period, true);
   clock.period_s = period;
   if (!clock.scatters() && steps.gapless(period)) {
     clock.worst_jitter_s = steps.jitter_s(period);

@@ -50,15 +50,16 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
 // Bayes: the prior probability of a change over the horizon is its average at this rest, to which a sum that contradicts
 // one adds nothing.
 void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
-  Lanes likely = Lanes::Zero();
+  const Lanes square = now.scale * (c.sum / c.weight.max(1.0)).square();
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
     if (!(now.mask[a] > 0.0)) continue;
-    const double often = (0.5 * h + c.times[a]) / (h + age_);
-    const double begun = often * exponential(std::min(nats[a], kEvidence));
-    likely[a] = begun / (begun + 1.0 - often);
+    const double often = (0.5 * h + c.times[a]) / (h + age_), seldom = 1.0 - often;
+    // exp(x) <= 1 / (1 - x) for x < 0: most samples need no exponential to show that they change nothing.
+    if (nats[a] < 0.0 && often * square[a] <= change_variance_[a] * (1.0 - nats[a]) * seldom) continue;
+    const double begun = often * exponential(std::min(nats[a], kEvidence)), likely = begun / (begun + seldom);
+    if (nats[a] > 0.0) c.times[a] += likely;
+    change_variance_[a] = std::max(change_variance_[a], likely * square[a]);
   }
-  c.times += (nats > 0.0).select(now.mask * likely, 0.0);
-  change_variance_ = change_variance_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
 }
 
 void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,

@@ -24,10 +24,9 @@ constexpr double kChance = 3.3;
 // be distinguished from the motion of a hand.
 constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 6.7;
-// First long octave, 64 samples: there the angle of shaking is bounded, and output filters are faster.
+// First long octave, 64 samples, which must have been seen: there the angle of shaking is bounded, and output
+// filters are faster.
 constexpr std::size_t kLong = 6;
-// Octave that must have been seen, 256 samples: the longest one of a stretch without gaps.
-constexpr std::size_t kJudged = 8;
 // Difference of -2 log-likelihood that refutes: e^6.
 constexpr double kSurely = 12.0;
 // Difference of -2 log-likelihood of one standard error.
@@ -86,7 +85,7 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
   if (++in_stretch_ < stretch_) return {};
   const bool seen = std::ranges::all_of(lately_, [&](const Allan& allan) {
-    return allan.counts[0] < kMeasured * stretch_ || allan.counts[kJudged] >= kFewest;
+    return allan.counts[0] < kMeasured * stretch_ || allan.counts[kLong] >= kFewest;
   });
   return seen ? judge() : std::nullopt;
 }
@@ -94,7 +93,8 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
 void Walk::add(std::size_t axis, double rate) noexcept {
   double mean = rate;
   // An axis whose present level differs does not count for the others.
-  if (const Allan& now = lately_[axis]; now.counts[0] >= kFewest && now.sums[0] > 0.0) {
+  if (const Allan& now = lately_[axis];
+      blocks_[axis][0].has_mean && now.counts[0] >= kFewest && now.sums[0] > 0.0) {
     const double most = kMostDeviations * std::sqrt(2.0 * now.sums[0] / now.counts[0]);
     const double last = blocks_[axis][0].mean;
     mean = std::clamp(rate, last - most, last + most);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "filters/distributions/median.h"
+
 namespace ifog {
 namespace {
 
@@ -18,6 +20,27 @@ void bridge_holes(const std::vector<std::uint8_t>& known, std::span<double> mean
     for (std::size_t j = last + 1; j < k; ++j)
       means[j] = means[last] +
                  (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
+    last = k;
+  }
+}
+
+// A channel is lost, not between its readings, if it has none for more than this many of their usual distances.
+constexpr double kLost = 3.0;
+
+// Where the channel is lost, its bridged values are used like readings: a spline would not be bound there.
+void use_bridges(std::vector<std::uint8_t>& read) {
+  std::vector<double> distances;
+  std::size_t last = 0;
+  for (std::size_t k = 0; k < read.size(); ++k)
+    if (read[k] != 0) distances.push_back(static_cast<double>(k - std::exchange(last, k)));
+  if (distances.empty()) return;
+  const double most = kLost * median(std::move(distances));
+  last = 0;
+  for (std::size_t k = 0; k <= read.size(); ++k) {
+    if (k < read.size() && read[k] == 0) continue;
+    if (static_cast<double>(k - last) > most)
+      std::fill(read.begin() + static_cast<std::ptrdiff_t>(last),
+                read.begin() + static_cast<std::ptrdiff_t>(k), 1);
     last = k;
   }
 }
@@ -63,6 +86,7 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
     if (with_power) power.push_back(count ? std::max(0.0, square / count - held * held) : 0.0);
   }
   bridge_holes(known, means);
+  use_bridges(read);
   return out;
 }
 

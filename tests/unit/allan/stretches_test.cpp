@@ -133,6 +133,26 @@ TEST(SampleClock, ADelayThatReturnsIsNoGap) {
   EXPECT_NEAR(clock.period_s, 0.02, 2e-6);
 }
 
+// A VectorNav at 40 Hz behind a node that is late by up to several periods, 95 s with five holes of 17 samples (EECE5554):
+// it was 45.4 Hz with 640 samples lost.
+TEST(SampleClock, AShortRecordOfLateStampsIsOfItsOwnRate) {
+  constexpr double kPeriod_s = 0.025;
+  std::mt19937_64 engine(17);
+  std::exponential_distribution<double> late_s(1.0 / (0.4 * kPeriod_s));
+  const std::vector<std::pair<int, int>> holes{{200, 4}, {1490, 3}, {2150, 3}, {2710, 5}, {2800, 2}};
+  std::vector<double> time;
+  int number = 0;
+  for (int n = 0; n < 3788; ++n, ++number) {
+    for (const auto& [after, lost] : holes)
+      if (n == after) number += lost;
+    const double stamp_s = kPeriod_s * number + late_s(engine);
+    time.push_back(time.empty() ? stamp_s : std::max(time.back() + 0.14 * kPeriod_s, stamp_s));
+  }
+  const SampleClock clock = sample_clock(time);
+  EXPECT_NEAR(clock.period_s, kPeriod_s, 1e-4 * kPeriod_s);
+  EXPECT_NEAR(static_cast<double>(clock.missing), 17.0, 6.0);
+}
+
 // A VMU931: 1 kHz in whole milliseconds, single, in pairs (spread by the reader) and left out; and a silence of 4.4 s.
 TEST(SampleClock, WholeMillisecondsOfAKilohertzAreNoGaps) {
   std::vector<double> time = late_stamps(1.0 / 1001.0, 1.7e-3, 0.0);

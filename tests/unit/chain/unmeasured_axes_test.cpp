@@ -70,6 +70,27 @@ TEST(SignalChain, WhatIsLearnedAtRestIsTheSameWhetherSamplesAreLostOrInvalid) {
   EXPECT_LT(told_variance(true, false), 2.0 * whole);
 }
 
+// A logger that loses 30 samples in every 600: a stretch of noise goes on over the gaps, and a rate that is not zero is not
+// clipped about zero after them.
+TEST(SignalChain, TheNoiseIsLearnedOverGaps) {
+  ChainSettings learning = settings();
+  learning.filter = FilterChoice{};
+  SignalChain chain(std::make_unique<ChainParts>(learning));
+  ChainOutput out;
+  const std::vector<Increment> all = increments(60'000, 4);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % 600 >= 570) continue;
+    Increment in = all[i];
+    if (i > 0 && i % 600 == 0) {
+      in.flags |= kGapBefore;
+      in.dt_s += 30.0 * kPeriod_s;
+    }
+    chain.process(in, out);
+  }
+  EXPECT_TRUE(chain.parts().learned());
+  EXPECT_NEAR(out.estimate.denoised_radps[0], 0.01, 2e-4);
+}
+
 // A correction by a live channel changes every compensated value. Repetition is judged by what the sensor
 // sent: from the 101st repeat on, with and without a model, before and after the noise is known. The flag ends
 // with the first different value.

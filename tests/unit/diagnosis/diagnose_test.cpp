@@ -122,6 +122,29 @@ TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   EXPECT_GT(with_loop, 3.0 * predict_heading(without, s.record(), 150.0, {600.0}).sigma_rad[0]);
 }
 
+// A loop is the play less its channel, so an effect of the channel is of the whole error: what least squares finds without
+// the loop.
+TEST(Diagnose, ACoefficientNextToALoopIsThatOfTheWholeError) {
+  constexpr double kCoefficient = 3e-7, kLoop = 4e-7;
+  Sensor s = quiet(31);
+  double play = s.temperature[0];
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    play = std::clamp(play, s.temperature[i] - 2.5, s.temperature[i] + 2.5);
+    s.rate[i] += kCoefficient * s.temperature[i] + kLoop * (play - s.temperature[i]);
+  }
+  double mean = 0.0, product = 0.0, square = 0.0;
+  for (const double each : s.temperature) mean += each / static_cast<double>(s.temperature.size());
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    const double off = s.temperature[i] - mean;
+    product += off * s.rate[i];
+    square += off * off;
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_TRUE(d.hysteresis);
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_NEAR(parameter(d.effects[0].effect, "coefficient"), product / square, 0.1 * product / square);
+}
+
 TEST(Diagnose, SeveralRecordsHaveASwitchOnBiasEach) {
   Sensor a = quiet(25);
   Sensor b = quiet(26);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/regression/whitening.h"
 #include "filters/diagnosis/channels/reconstruct.h"
+#include "filters/diagnosis/record/step_means.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
@@ -176,6 +177,19 @@ TEST(Reconstruct, WhatJumpsOrJittersStaysAsItWasRead) {
     EXPECT_EQ(found.values, channel);
     EXPECT_FALSE(stands_still(channel));
   }
+}
+
+// The plug of a thermometer comes off while it warms: its last reading is all that is known from there on.
+TEST(Reconstruct, AChannelThatIsLostIsNotExtrapolated) {
+  std::vector<double> read(6000, std::nan(""));
+  StepStarts starts;
+  for (std::size_t i = 0; i <= read.size(); ++i) starts.push_back(i);
+  for (std::size_t i = 0; i < 3000; i += 10) read[i] = 20.0 + 1e-6 * static_cast<double>(i * i);
+  const StepMeans steps = step_means(read, starts, false, false);
+  const Reconstruction found = reconstruct(steps.means, steps.read);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_NEAR(found.values[1495], 20.0 + 1e-6 * 1495.0 * 1495.0, 0.01);
+  EXPECT_NEAR(found.values[5999], read[2990], 0.3);
 }
 
 TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {

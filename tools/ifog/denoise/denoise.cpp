@@ -164,7 +164,7 @@ template <class Settings>
 OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
                             DenoisedRows& rows) {
   LongTable table = options.input.read_long(capture);
-  table.clean_and_tell(leave_out_placeholders, options.capture);
+  table.clean_and_tell(leave_out_repeats, options.capture);
   leave_out_dead_axes(table, options.capture);
   rows.count_from(table.origin);
   OfflineSettings of = settings();
