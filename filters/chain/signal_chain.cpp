@@ -55,16 +55,20 @@ void ChainParts::use_noise(const ChainSettings& settings) {
                make_state_model(filter_.state, filter_.state_parameters, period_s_)->colour_variance();
     const NoiseOfAxes known = noise_of_axes(*settings.model, settings.axes, rate_hz, noise);
     shares_ = known.shares;
-    if (filter_.measurement_noise <= 0.0 && known.sample) filter_.measurement_noise = *known.sample;
+    if (filter_.measurement_noise <= 0.0 && known.sample) {
+      filter_.measurement_noise = *known.sample;
+      of_long_means_ = true;
+    }
     if (filter_.process_noise <= 0.0 && known.walk && filter_.state == "random-walk")
       filter_.process_noise = *known.walk;
   }
   learns_process_noise_ = filter_.process_noise <= 0.0;
-  learns_measurement_noise_ = filter_.measurement_noise <= 0.0;
+  const bool learns_measurement_noise = filter_.measurement_noise <= 0.0;
+  of_long_means_ = of_long_means_ || learns_measurement_noise;
   double ratio = kMostRatio, samples = 0.0;
   if (settings.learned && filter_.state == "random-walk") {
     const LearnedNoise& learned = *settings.learned;
-    if (learns_measurement_noise_) {
+    if (learns_measurement_noise) {
       filter_.measurement_noise = learned.measurement_noise;
       if (!shares_.noise && learned.measurement_noise > 0.0) {
         shares_.noise = learned.noise;
@@ -92,6 +96,7 @@ void ChainParts::begin(double ratio, double samples) {
   if (learns_process_noise_) filter_.process_noise = ratio * filter_.measurement_noise / period_s_;
   KnownNoise known;
   if (shares_.noise) known.share = *shares_.noise;
+  known.of_long_means = of_long_means_;
   known.walk_share = shares_.walk;
   known.learns_walk = learns_process_noise_ && filter_.state == "random-walk";
   known.samples = samples;

@@ -116,7 +116,7 @@ class ChainParts {
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;
   std::uint32_t measured_axes_ = 0;  // axes that the estimator has received
-  bool learns_process_noise_ = false, learns_measurement_noise_ = false;
+  bool learns_process_noise_ = false, of_long_means_ = false;
   Axes owed_{};  // of the previous estimator, until the new one exists
   bool first_ = true;
 };

@@ -13,9 +13,7 @@ namespace {
 
 // Variance of innovations in shaking, in R; half its logarithm is ln 2.
 constexpr double kShakingVariance = 4.0;
-// Number of sums averaged: half of them overlap, so 180 give their variance to 15 %; and the weight of the
-// prior.
-constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
+
 }  // namespace
 
 // Evidence from the sizes of the errors alone, with their effective number from the fourth moment.
@@ -62,8 +60,8 @@ void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& n
   }
 }
 
-void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
-                         const Lanes& colour) noexcept {
+void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now,
+                         const Common& common) noexcept {
   Contest& c = contest_[j];
   const Trackers::Gains& g = trackers.gains(j);
   const double h = trackers.horizon(j), keep = c.keep;
@@ -73,21 +71,11 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * c.weight + now.mask;
   // Effective number of innovations in the sum: its variance / R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
-  Lanes& likely = c.divisor.setOnes();
-  Lanes share = now.mask;
-  if (coloured_) {
-    c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
-    c.wide += now.mask * (c.sum.square() / n - c.wide) / (h * (c.horizons + 1.0));
-    // Until it is learned, the width is the largest that the known noise and its third differences allow.
-    const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
-    const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-    likely = (colour > kColoured).select((wide / common.excess).max(1.0), likely);
-    widest_ = widest_.max(likely);
-    share /= likely;  // correlated neighbours count once; limited by the rarity of an outlier
-  }
+  // Correlated neighbours count once; the limit is the rarity of an outlier.
+  const Lanes alike = common.colour.min(n), share = now.mask / alike;
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
-  expect(c, h, c.shrinks * c.sum.square() / (n * likely * common.second) - c.spread, now);
+  expect(c, h, c.shrinks * c.sum.square() / (n * alike * common.second) - c.spread, now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;
@@ -95,25 +83,23 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.tracker = keep * c.tracker + mine.min(kFarSquare);
 }
 
-std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
+std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& decay,
                                             double rarity, double lag) noexcept {
   const Lanes capped = now.surprise.min(2.0 * rarity);
   const double most = std::sqrt(2.0 * rarity);
   const Common common{(now.innovation * now.inverse.sqrt()).max(-most).min(most),
                       now.surprise.min(kFarSquare),
-                      (second_ / kOtherNoise).max(1.0),
                       second_.max(1.0),
+                      (2.0 - decay) / decay,
                       2.0 * rarity,
                       logarithm(now.rest_factor)};
-  coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
   change_variance_.setZero();
-  widest_.setOnes();
   suspected_ = false;
   std::optional<std::size_t> found;
   double furthest = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
-    contest(trackers, j, now, common, colour);
+    contest(trackers, j, now, common);
     const Contest& c = contest_[j];
     if (!(greatest(c.ratio) > 0.5 * kEvidence)) continue;
     suspected_ = true;
@@ -126,30 +112,13 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   }
   // Tails and colour let large innovations coincide. If all exceed the known noise, it is motion.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes tails = (fourth_ / (3.0 * common.excess.square())).max(1.0);
-  const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / widest_).min(common.cap);
-  shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / widest_) / tails).max(0.0);
+  const Lanes tails = (fourth_ / (3.0 * (second_ / kOtherNoise).max(1.0).square())).max(1.0);
+  const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / common.colour).min(common.cap);
+  shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / common.colour) / tails).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   second_ += now.mask * (capped - second_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;
-}
-
-// README.md derives it: b / (k + b) divided by the noise's part is linear in b, and is extrapolated to zero.
-Lanes ChangeTest::wide(const Trackers& trackers, double lag, double rule) const noexcept {
-  Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
-  if (!coloured_) return wide;
-  const double k = 1.0 / (1.0 + lag);
-  double before = 0.0;
-  for (std::size_t j = 0; j < trackers.size() && (j <= 1 || trackers.horizon(j) <= 2.0 * lag); ++j) {
-    const double b = 1.0 / trackers.horizon(j), both = k + b;
-    const Lanes inverse = b / (both * (contest_[j].wide - rule * k / both).max(0.1 * b / both));
-    const double ahead = before > b ? b / (before - b) : 0.0;
-    wide = 1.0 / (rule * (inverse - ahead * (inverse_before - inverse)).max(0.25 * inverse));
-    before = b;
-    inverse_before = inverse;
-  }
-  return wide;
 }
 
 }  // namespace ifog

@@ -23,9 +23,9 @@ class ChangeTest {
   static constexpr std::size_t kShaking = Trackers::kMost;
 
   // Returns the tracker that predicts the change, kShaking, or nullopt; to be called before
-  // Trackers::correct(). colour: Noise::colour() of each axis; rarity: Outliers::rarity(); lag: of the filter
+  // Trackers::correct(). decay: Noise::decay() of each axis; rarity: Outliers::rarity(); lag: of the filter
   // at rest, samples.
-  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& colour,
+  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& decay,
                                   double rarity, double lag) noexcept;
   // To be called when a manoeuvre is detected or the filter starts; keeps what is known of the noise.
   void begin() noexcept;
@@ -35,27 +35,21 @@ class ChangeTest {
   void forget_angle() noexcept { short_.fill(Lanes::Zero()); }
   // Variance because of a change that may have begun undetected, (rad/s)^2.
   [[nodiscard]] const Lanes& change_variance() const noexcept { return change_variance_; }
-  // Variance of the filter at rest due to noise, relative to white noise of the rule's R. rule: the rule's R
-  // / known R.
-  [[nodiscard]] Lanes wide(const Trackers& trackers, double lag, double rule) const noexcept;
 
  private:
   struct Contest {
     Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
-    // Variance of a sum relative to white noise, as learned; and the resulting divisor of evidence.
-    Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes times = Lanes::Zero();         // time in which a change was likely to have begun
     double shrinks = 0.0, spread = 0.0;  // of an offset's likelihood
     double keep = 0.0, worth = 0.0;      // 1 - 1 / h and 1 / (2 h - 1) for horizon h
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    // Innovations clipped and squared; their variance relative to the largest expected from the known noise, and to R.
-    Lanes clipped, squares, excess, second;
+    // Innovations clipped and squared; their variance relative to R; and that of long sums relative to white noise.
+    Lanes clipped, squares, second, colour;
     double cap, log_rest;
   };
-  void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
-               const Lanes& colour) noexcept;
+  void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common) noexcept;
   void expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept;
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
@@ -63,9 +57,9 @@ class ChangeTest {
   std::array<Lanes, Trackers::kMost> short_;
   Lanes shaking_ = Lanes::Zero();
   Lanes second_ = Lanes::Ones(), fourth_ = Lanes::Constant(3.0);  // moments of the innovations
-  Lanes change_variance_ = Lanes::Zero(), widest_ = Lanes::Ones();
+  Lanes change_variance_ = Lanes::Zero();
   double seen_ = 64.0, age_ = 0.0;  // age_: samples at rest
-  bool suspected_ = false, coloured_ = false;
+  bool suspected_ = false;
 };
 
 }  // namespace ifog

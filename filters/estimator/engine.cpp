@@ -193,8 +193,7 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.shortfall_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, rest_->rate_alone() ? noise_.each(&Noise::colour) : Lanes::Ones(),
-                    f.outliers.rarity(), f.lag());
+      f.change.take(f.trackers, s.sample, decay(), f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && smooths_) found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) return begin_manoeuvre(s, *found);
@@ -292,15 +291,19 @@ void Engine::guard(Step& s) noexcept {
   publish_rest(s);
 }
 
-// Half of the variance is due to measurement noise (more if coloured), half due to the walk.
+Lanes Engine::decay() const noexcept {
+  return rest_->rate_alone() ? noise_.each(&Noise::decay) : Lanes::Ones();
+}
+
+// Half of the variance is due to measurement noise (more if coloured: README.md), half due to the walk.
 void Engine::publish_rest(Step& s) noexcept {
   s.rate = rest_->rate().value;
   s.gain = rest_->rate().gain;
   s.variance.setConstant(rest_->rate().variance);
   if (!settings_.follow_manoeuvres) return;
   const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
-  const Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag(), rule);
-  s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * wide);
+  const Lanes lost = 1.0 - (1.0 - decay()) * follow_.lag() / (1.0 + follow_.lag());
+  s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * (2.0 - lost) / (rule * lost));
   s.variance += follow_.change.change_variance() + noise_.each(&Noise::rounding);
 }
 

@@ -67,6 +67,8 @@ struct KnownNoise {
   Axes share{1.0, 1.0, 1.0};
   // Driving noise of each axis / FilterSettings::process_noise. nullopt: in proportion to the axis's noise.
   std::optional<Axes> walk_share;
+  // The noise variances are those of long means, times their number of samples: any colour is within them.
+  bool of_long_means = false;
   // FilterSettings::process_noise is a start value that is improved at rest. samples: number of samples from
   // which an earlier run has learned it, 0: none.
   bool learns_walk = false;

@@ -20,7 +20,10 @@ SensorNoise::SensorNoise(const FilterSettings& settings, const KnownNoise& known
       white_(settings.measurement_noise / given_),
       learns_walk_(known.learns_walk),
       walk_share_(known.walk_share) {
-  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(known.share[a] * given_);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    noise_[a] = Noise(known.share[a] * given_);
+    if (known.of_long_means) noise_[a].set_long(noise_[a].known());
+  }
   refresh_share();
   if (known.samples > 0.0) walk_.recall(process_noise_ * period_s / given_, known.samples);
 }
@@ -38,7 +41,9 @@ void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, Res
   if (!found) return;
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (!(found->noise[a] > 0.0) || !found->white) continue;
+    if (!(found->noise[a] > 0.0)) continue;
+    noise_[a].set_long(found->white ? noise_[a].known() : found->noise[a]);
+    if (!found->white) continue;
     // With a coarse converter the result depends on the level; less than its rounding variance is not R.
     const double level = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
     if (at_rest ? kOtherNoise * level < known : level > kOtherNoise * known) {

@@ -47,10 +47,12 @@ class Noise {
     last_ = {last_[1], last_[2], rate};
   }
   void set_known(double noise) noexcept {
-    known_ = noise;
+    known_ = long_ = noise;
     slow_ = fast_;
     refresh_colour();
   }
+  // R of long means, (rad/s)^2, as a stretch of noise has shown it.
+  void set_long(double noise) noexcept { long_ = noise; }
   [[nodiscard]] double known() const noexcept { return known_; }
   // R for motion tests: a rate halfway between two steps d of the converter has the variance d^2 / 4.
   [[nodiscard]] double tested() const noexcept { return std::max(known_, 0.25 * digit() * digit()); }
@@ -64,6 +66,12 @@ class Noise {
   [[nodiscard]] double over_known() const noexcept { return std::max(1.0, fast_ / known_); }
   // Variance of the known noise / that of white noise with the same third differences; 1 within chance.
   [[nodiscard]] double colour() const noexcept { return colour_; }
+  // Share of the noise's correlation that is lost from sample to sample if it is of first order; 1: white. R of long means
+  // is (2 - r) / r of known(). Until it is known, r is from third differences: colour() of 20 / (20 - 30 p + 12 p^2 - 2 p^3),
+  // p = 1 - r, solved to 3 %.
+  [[nodiscard]] double decay() const noexcept {
+    return long_ > 0.0 ? 2.0 / (1.0 + std::max(1.0, long_ / known_)) : 1.0 / (0.4 + 0.6 * colour_);
+  }
   // Mean error variance of an average of values rounded to steps d, over all true levels: first harmonic of
   // the sawtooth, d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
@@ -97,7 +105,7 @@ class Noise {
   // Four standard deviations: the mean square of 32 overlapping third differences scatters by 0.4.
   static constexpr double kSignificant = 2.6;
 
-  double known_, slow_, fast_, taken_ = 0.0, least_ = 0.0, colour_ = 1.0,
+  double known_, slow_, fast_, long_ = 0.0, taken_ = 0.0, least_ = 0.0, colour_ = 1.0,
                                digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};
   int in_row_ = 0;
