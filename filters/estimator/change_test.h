@@ -45,8 +45,8 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    // Innovations clipped and squared; their variance relative to R; and that of long sums relative to white noise.
-    Lanes clipped, squares, second, colour;
+    // Innovations clipped and squared; their variance relative to R; Noise::decay().
+    Lanes clipped, squares, second, decay;
     double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common) noexcept;

@@ -302,8 +302,8 @@ void Engine::publish_rest(Step& s) noexcept {
   s.variance.setConstant(rest_->rate().variance);
   if (!settings_.follow_manoeuvres) return;
   const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
-  const Lanes lost = 1.0 - (1.0 - decay()) * follow_.lag() / (1.0 + follow_.lag());
-  s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * (2.0 - lost) / (rule * lost));
+  const Lanes colour = colour_of_sum(decay(), follow_.lag() / (1.0 + follow_.lag()));
+  s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * colour / rule);
   s.variance += follow_.change.change_variance() + noise_.each(&Noise::rounding);
 }
 

@@ -49,6 +49,13 @@ struct Sample {
   double rest_factor = 1.0;         // variance of the filter's innovations / R
 };
 
+// Variance of a sum with fading memory, relative to that of white noise, if neighbours' correlation is lost by the share
+// `decay` per sample and the memory keeps the share `keep`.
+[[nodiscard]] inline Lanes colour_of_sum(const Lanes& decay, double keep) noexcept {
+  const Lanes lost = 1.0 - (1.0 - decay) * keep;
+  return (2.0 - lost) / lost;
+}
+
 [[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }
 
 }  // namespace ifog
