@@ -114,7 +114,8 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   seen_ = std::min(seen_ + 1.0, kTailMemory);
   const Lanes tails = (fourth_ / (3.0 * (second_ / kOtherNoise).max(1.0).square())).max(1.0);
   const Lanes colour = colour_of_sum(decay, 1.0);
-  const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / colour).min(common.cap);
+  const Lanes larger =
+      (0.5 - 0.5 / kShakingVariance) * (now.surprise / (now.louder * colour)).min(common.cap);
   shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / colour) / tails).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   second_ += now.mask * (capped - second_) / seen_;

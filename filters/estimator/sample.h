@@ -47,6 +47,7 @@ struct Sample {
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle error of the filter at rest before this sample
   double rest_factor = 1.0;         // variance of the filter's innovations / R
+  double louder = 1.0;              // variance that noise may have for a while / the usual one
 };
 
 // Variance of a sum with fading memory, relative to that of white noise, if neighbours' correlation is lost by the share
