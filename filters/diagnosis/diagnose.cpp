@@ -57,8 +57,10 @@ class Run {
     drop_what_a_capture_denies();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
-      say(harmful_in_words(result_.effects[*harmful].effect));
-      drop(*harmful);
+      if (!smooth(*harmful)) {
+        say(harmful_in_words(result_.effects[*harmful].effect));
+        drop(*harmful);
+      }
       fit_jointly();
     }
     refuse_other_unit(result_);
@@ -204,6 +206,15 @@ class Run {
     if (const auto uncertain = least_proven()) return uncertain;
     if (!grows_over_many(result_, errors_)) return std::nullopt;
     return least_missed_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s);
+  }
+
+  // Once for each rate of change: the readings are noisier than the channel that was rebuilt from them.
+  bool smooth(std::size_t at) {
+    Candidate& effect = found_.chosen[at].candidate;
+    if (effect.form != Form::kRate || std::exchange(effect.smoothed, true)) return false;
+    const double longest_s = time_constants(data_.grid, effect.form).back();
+    effect.time_constant_s = smoothing_s(records_, result_, at, longest_s, data_.grid.sample_s);
+    return true;
   }
 
   void report_effects() {

@@ -31,6 +31,7 @@ struct Candidate {
   double half_width = 0.0;              // of a transition
   double of_channel = 0.0;              // additional complexity of a derived channel
   FirstReading first_reading = FirstReading::kError;
+  bool smoothed = false;  // time_constant_s is what the noise of the readings needs, and no estimate
 
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }

@@ -75,7 +75,7 @@ std::vector<SearchedParameter> searched_parameters(const std::vector<Candidate>&
     if (effects[i].is_transition()) {
       found.push_back({i, &Candidate::half_width});
       found.push_back({i, &Candidate::centre});
-    } else if (effects[i].searched()) {
+    } else if (effects[i].searched() && !effects[i].smoothed) {
       found.push_back({i, &Candidate::time_constant_s});
     }
   }

@@ -134,6 +134,25 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
   }
 }
 
+namespace {
+
+// Of the effects that the daemon corrects, with `change` applied to each by its index; those it returns false for are left
+// out.
+template <class Change>
+Model model_of(const Diagnosis& diagnosis, const Change& change) {
+  Model model;
+  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
+    if (diagnosis.effects[i].effect.shown_only) continue;
+    Effect effect = diagnosis.effects[i].effect;
+    effect.axis.clear();
+    if (change(i, effect)) model.effects.push_back(std::move(effect));
+  }
+  model.ranges = diagnosis.ranges;
+  return model;
+}
+
+}  // namespace
+
 std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
                                                std::size_t candidates, double sample_s) {
   double least = std::numeric_limits<double>::infinity();
@@ -141,13 +160,7 @@ std::optional<std::size_t> least_missed_effect(const std::vector<Record>& record
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::optional<Form> form = form_named(diagnosis.effects[i].effect.form);
     if (!form || !carries_over(*form) || diagnosis.effects[i].effect.shown_only) continue;
-    Model model;
-    for (std::size_t j = 0; j < diagnosis.effects.size(); ++j) {
-      if (j == i || diagnosis.effects[j].effect.shown_only) continue;
-      model.effects.push_back(diagnosis.effects[j].effect);
-      model.effects.back().axis.clear();
-    }
-    model.ranges = diagnosis.ranges;
+    const Model model = model_of(diagnosis, [&](std::size_t at, const Effect&) { return at != i; });
     double without = 0.0;
     for (const Record& record : records)
       without += error_in_means(on_even_grid(record, sample_s, compensated_error(record, model)));
@@ -156,6 +169,24 @@ std::optional<std::size_t> least_missed_effect(const std::vector<Record>& record
     found = i;
   }
   return found;
+}
+
+double smoothing_s(const std::vector<Record>& records, const Diagnosis& diagnosis, std::size_t at,
+                   double most_s, double sample_s) {
+  double least = std::numeric_limits<double>::infinity(), best_s = 0.0;
+  const std::string name{time_constant_name(diagnosis.effects[at].effect)};
+  for (double trial_s = parameter(diagnosis.effects[at].effect, name); trial_s <= most_s; trial_s *= 1.5) {
+    const Model model = model_of(diagnosis, [&](std::size_t i, Effect& effect) {
+      for (ModelParameter& each : effect.parameters)
+        if (i == at && each.name == name) each.value = trial_s;
+      return true;
+    });
+    double left = 0.0;
+    for (const Record& record : records)
+      left += variance_of(on_even_grid(record, sample_s, compensated_error(record, model)));
+    if (left < least) least = left, best_s = trial_s;
+  }
+  return best_s;
 }
 
 }  // namespace ifog

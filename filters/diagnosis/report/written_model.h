@@ -30,4 +30,9 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
 std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
                                                std::size_t candidates, double sample_s);
 
+// Time constant of effect `at`, a rate of change, with which the daemon's correction by the readings themselves leaves the
+// smallest error: that of the error may be shorter than their noise allows. Tries up to `most_s` by factors of 1.5.
+double smoothing_s(const std::vector<Record>& records, const Diagnosis& diagnosis, std::size_t at,
+                   double most_s, double sample_s);
+
 }  // namespace ifog

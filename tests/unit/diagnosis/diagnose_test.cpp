@@ -122,6 +122,26 @@ TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   EXPECT_GT(with_loop, 3.0 * predict_heading(without, s.record(), 150.0, {600.0}).sigma_rad[0]);
 }
 
+// A Shupe effect next to a thermometer of 1/16 K and some hundredths of noise at the gyro's rate: its readings need to be
+// smoothed over longer than the coil's own time constant, which would multiply their noise.
+TEST(Diagnose, ARateIsSmoothedAsItsThermometerNeeds) {
+  Sensor s = quiet(33);
+  double before = s.temperature[0];
+  for (std::size_t i = 0; i < s.rate.size(); ++i) {
+    double& temperature = s.temperature[i];
+    temperature = 28.0 + 6.0 * std::sin(2.0 * M_PI * s.time[i] / 900.0);
+    s.rate[i] += 2e-4 * (temperature - std::exchange(before, temperature)) / 0.1;
+    const double noise = 0.03 * gaussian(static_cast<std::uint32_t>(i), 6, 33);
+    temperature = std::round(16.0 * (temperature + noise)) / 16.0;
+  }
+  const Diagnosis d = diagnose({s.record()}, {});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].effect.form, "rate");
+  EXPECT_GT(parameter(d.effects[0].effect, "bandwidth_s"), 3.0);
+  EXPECT_LT(d.after.at("rms_10s_radps"), 0.4 * d.before.at("rms_10s_radps"));
+  EXPECT_LT(d.after.at("residual_rms_radps"), d.before.at("residual_rms_radps"));
+}
+
 // A loop is the play less its channel, so an effect of the channel is of the whole error: what least squares finds without
 // the loop.
 TEST(Diagnose, ACoefficientNextToALoopIsThatOfTheWholeError) {

@@ -114,8 +114,9 @@ std::string percent(double share) {
 std::string value_of(const ModelParameter& parameter) {
   if (parameter.name == kTimeRange) return told_time(parameter.value) + " s";
   const report::FieldUnit field = report::field_unit(parameter.unit);
-  return fmt::format("{:.4g} ± {:.2g} {}", parameter.value * field.scale, parameter.std_error * field.scale,
-                     field.unit);
+  const std::string error =
+      parameter.std_error > 0.0 ? fmt::format(" ± {:.2g}", parameter.std_error * field.scale) : "";
+  return fmt::format("{:.4g}{} {}", parameter.value * field.scale, error, field.unit);
 }
 
 std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
