@@ -1,17 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // Confidence intervals of measured variances, from the distribution of the estimator under the noise of the
-// record (estimate_law.h). The noise is fitted to the whole record, not to the few averages at τ, so its type
+// record The noise is fitted to the whole record, not to the few averages at τ, so its type
 // may change along τ.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "filters/allan/deviation.h"
-#include "filters/allan/estimate_law.h"
+#include "filters/allan/power_law.h"
+#include "filters/allan/weighted_chi_squared.h"
 
 namespace ifog {
+
+// Distribution of estimate / mean as a weighted sum of χ². degrees: equivalent degrees of freedom
+// (EstimateVariance). If it is large, one χ². Else the weights are eigenvalues of the covariance of
+// differences m/8 apart, plus one part for quantisation. samples: lengths of the stretches. Empty if no
+// difference fits.
+[[nodiscard]] std::vector<WeightedChiSquared> estimate_law(Deviation kind, std::size_t m,
+                                                           std::span<const std::size_t> samples,
+                                                           const TermVariances& variances, double degrees);
+
+// Covariance matrix of `size` places whose covariance depends on their distance, `variances` of unit terms.
+[[nodiscard]] Eigen::MatrixXd toeplitz(std::size_t size,
+                                       const std::function<TermVariances(double)>& covariance,
+                                       const TermVariances& variances);
+
+// Adds the eigenvalues of a covariance relative to the mean square, except negligible ones.
+void add_modes(const Eigen::MatrixXd& covariance, std::vector<WeightedChiSquared>& law);
 
 struct AllanInterval {
   Term strongest = kN;  // largest part of the variance at this τ

@@ -2,7 +2,6 @@
 #include "filters/allan/stretches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -75,18 +74,12 @@ struct Extremes {
 };
 
 Extremes extremes_of(std::span<const double> time_s) {
-  constexpr std::size_t kLanes = 4;  // for instruction-level parallelism
   Extremes found;
-  std::array<double, kLanes> least, most;
-  least.fill(found.least_s);
-  most.fill(found.most_s);
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
     const double step = step_after(time_s, i);
-    least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
-    most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
+    found.least_s = std::min(found.least_s, step);
+    found.most_s = std::max(found.most_s, step);
   }
-  found.least_s = *std::ranges::min_element(least);
-  found.most_s = *std::ranges::max_element(most);
   return found;
 }
 
@@ -162,7 +155,6 @@ SampleClock sample_clock(std::span<const double> time_s) {
     for (double& step : away) step = std::abs(step - period_s);
     return 1.4826 * median(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
   };
-  // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
   const EvenClock even = steps.gapless(period) ? EvenClock{} : even_clock(time_s);
   std::ranges::nth_element(some, some.begin() + std::ssize(some) / 10);
   if (even.period_s > 0.0 && even.explains(some[some.size() / 10])) {

@@ -216,10 +216,4 @@ LikelihoodTerms likelihood(const StateModel& model, double process_noise, double
   return sum;
 }
 
-LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
-                           std::span<const double> rate, double dt_s) {
-  const std::span<const double> axes[] = {rate};
-  return likelihood(model, process_noise, measurement_noise, LikelihoodRecord(axes), dt_s);
-}
-
 }  // namespace ifog

@@ -5,20 +5,25 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "filters/allan/runs.h"
 #include "filters/distributions/median.h"
-#include "filters/rest/held.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kTimes = 64;
+// Quarters of a time cell; the middle two are used, so that an outlier does not count.
+constexpr std::size_t kFine = 4;
+constexpr std::size_t kCells = kTimes * kFine;
 constexpr std::size_t kMostOctaves = 40;
 // Coefficients a cell needs; below, cells are joined in pairs.
 constexpr double kFewest = 8.0;
 constexpr std::size_t kFewestTimes = 8;
+// Cells with fewer coefficients are not divided into quarters.
+constexpr double kParted = 32.0;
 // Departure in standard deviations that the noise of one octave reaches in fewer than one of 2000 records,
 // over all stretches (simulated).
 constexpr double kSurely = 5.2;
@@ -42,7 +47,7 @@ constexpr int kMostReplaced = 3;
 // Sums of coefficient magnitudes of one octave, by time cell. Squares would not converge for heavy-tailed
 // noise; magnitudes cost an eighth of the information for normal noise.
 struct Octave {
-  std::array<double, kTimes> magnitudes{}, counts{};
+  std::array<double, kCells> magnitudes{}, counts{};
   double beyond_rounding = 0.0;  // count of coefficients beyond rounding
 };
 
@@ -77,7 +82,7 @@ class Pyramid {
   double despiked(double rate) {
     const double step = std::abs(rate - accepted_);
     const bool first = levels_[0].count == 0;
-    if (!first && steps_ >= kFewest && step > kSpike * usual_step_ && replaced_ < kMostReplaced) {
+    if (!first && steps_ >= kParted && step > kSpike * usual_step_ && replaced_ < kMostReplaced) {
       ++replaced_;
       return accepted_;
     }
@@ -85,15 +90,8 @@ class Pyramid {
     accepted_ = rate;
     if (first || step <= kRoundedAway * std::abs(rate)) return rate;
     steps_ = std::min(steps_ + 1.0, kUsual);
-    usual_step_ +=
-        over(std::min(step, kSpike * std::max(usual_step_, over(step, steps_))) - usual_step_, steps_);
+    usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
     return rate;
-  }
-
-  // value / count. For count = kUsual, a power of two, the product equals the quotient to the bit.
-  static double over(double value, double count) {
-    constexpr double kPart = 1.0 / kUsual;
-    return count == kUsual ? value * kPart : value / count;
   }
 
   struct Level {
@@ -112,8 +110,8 @@ class Pyramid {
     const std::size_t place = at - std::min(at, std::size_t{3} << octave);
     Level& level = levels_[octave];
     if (place >= level.cell_end) {
-      level.cell = std::min(kTimes - 1, place * kTimes / samples_);
-      level.cell_end = (level.cell + 1) * samples_ / kTimes + ((level.cell + 1) * samples_ % kTimes != 0);
+      level.cell = std::min(kCells - 1, place * kCells / samples_);
+      level.cell_end = (level.cell + 1) * samples_ / kCells + ((level.cell + 1) * samples_ % kCells != 0);
     }
     const std::size_t cell = level.cell;
     octaves_[octave].counts[cell] += 1.0;
@@ -123,7 +121,7 @@ class Pyramid {
     level.met = std::min(level.met + 1.0, kUsual);
     const double magnitude = level.met < kFewest ? std::abs(coefficient)
                                                  : std::min(std::abs(coefficient), kMostTimes * level.usual);
-    level.usual += over(magnitude - level.usual, level.met);
+    level.usual += (magnitude - level.usual) / level.met;
     octaves_[octave].magnitudes[cell] += magnitude;
   }
 
@@ -136,10 +134,10 @@ class Pyramid {
 
 // Square roots of one octave's mean magnitudes by time cell, nearly normal.
 struct NoiseLevel {
-  std::vector<double> root;       // of the cells with enough coefficients
-  std::vector<std::size_t> cell;  // index of the first cell, kTimes per record
-  double deviation = 0.0;         // of one root while the level is constant
-  std::size_t cells_each = 1;     // cells per root
+  std::vector<double> root;        // of the cells with enough coefficients
+  std::vector<std::size_t> cell;   // index of the first cell, kCells per record
+  double deviation = 0.0;          // of one root while the level is constant
+  std::size_t cells_each = kFine;  // cells per root
 };
 
 double count_of(const Octave& octave, std::size_t begin, std::size_t end) {
@@ -155,6 +153,19 @@ double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) 
   return count > 0.0 ? sum / count : 0.0;
 }
 
+// Mean of the middle two of four quarters.
+double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
+  std::array<double, kFine> quarters{};
+  const std::size_t length = (end - begin) / kFine;
+  for (std::size_t q = 0; q < kFine; ++q)
+    if (!(count_of(octave, begin + q * length, begin + (q + 1) * length) > 0.0))
+      return mean_magnitude(octave, begin, end);
+  for (std::size_t q = 0; q < kFine; ++q)
+    quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
+  std::ranges::sort(quarters);
+  return 0.5 * (quarters[1] + quarters[2]);
+}
+
 // Scatter of means of `together` neighbouring roots, scaled to one root. Heavy tails scatter more than normal
 // noise. A resonance with slow beats scatters several times more in means than in single roots.
 double deviation_by(const std::vector<double>& root, std::size_t together) {
@@ -168,7 +179,7 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
 }
 
 NoiseLevel noise_level_of(const Octave& octave) {
-  const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kTimes);
+  const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kCells);
   // With a coarse sensor only a share of the differences is not zero. Their number varies, and they come in
   // pairs, as each change of the value is in two of them.
   const double wanted = kFewest * (1.0 + 3.0 * (1.0 - share));
@@ -176,7 +187,7 @@ NoiseLevel noise_level_of(const Octave& octave) {
   std::size_t times = kTimes;
   while (times >= kFewestTimes && count < wanted * static_cast<double>(times)) times /= 2;
   if (times < kFewestTimes) return out;
-  out.cells_each = kTimes / times;
+  out.cells_each = kCells / times;
   std::vector<double> counts;
   for (std::size_t t = 0; t < times; ++t)
     if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
@@ -186,14 +197,16 @@ NoiseLevel noise_level_of(const Octave& octave) {
   for (std::size_t t = 0; t < times; ++t) {
     const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
     if (count_of(octave, begin, end) < 0.5 * usual) continue;
-    out.root.push_back(std::sqrt(mean_magnitude(octave, begin, end)));
+    out.root.push_back(std::sqrt(usual < kParted ? mean_magnitude(octave, begin, end)
+                                                 : middle_magnitude(octave, begin, end)));
     out.cell.push_back(begin);
   }
   if (out.root.size() < kFewestTimes) return out = {};
+  constexpr double kOfMiddle = 1.3;  // ratio of variances: mean of the middle two of four, mean of all four
   // The mean magnitude of n normal variables has relative variance (pi / 2 - 1) / n; its square root has a
   // quarter of that.
   const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
-  const double least = std::sqrt(each / usual) * median(out.root);
+  const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
   if (!(least > 0.0)) return {};
   out.deviation = least;
   for (const std::size_t together : {1U, 2U, 4U})
@@ -294,6 +307,44 @@ void leave_out(const Found& found, std::vector<NoiseLevel>& all) {
   }
 }
 
+// Stretches where the value does not change at all although it changes elsewhere: the logger repeats its last value, or
+// the sensor has not started. They are no noise.
+struct HeldApart {
+  std::vector<Stretch> held, moving;  // in order; together all of `parts`
+};
+
+// Splits `parts`. Held: runs of equal values from 64 samples and 1/4096 of the record on, if at least half of the other
+// steps are changes. So a sensor whose resolution is coarse against its noise has no held stretches.
+HeldApart apart_from_held(std::span<const double> rate, const std::vector<Stretch>& parts) {
+  constexpr std::size_t kLeastHeld = 64, kMostRuns = 4096;
+  const std::size_t least = std::max(kLeastHeld, rate.size() / kMostRuns);
+  HeldApart out;
+  std::size_t steps = 0, changes = 0;  // outside held stretches
+  for (const Stretch& part : parts) {
+    Stretch moving{part.begin, part.begin};
+    std::size_t values = 0;  // runs in `moving`
+    const auto end_moving = [&] {
+      if (moving.size() == 0) return;
+      out.moving.push_back(moving);
+      steps += moving.size() - 1;
+      changes += std::exchange(values, 0) - 1;
+    };
+    for_each_run(rate, {&part, 1}, [&](const Run& run) {
+      const std::size_t end = run.begin + run.length;
+      if (run.length < least) {
+        moving.end = end, ++values;
+        return;
+      }
+      end_moving();
+      out.held.push_back({run.begin, end});
+      moving = {end, end};
+    });
+    end_moving();
+  }
+  if (out.held.empty() || steps < kLeastHeld || 2 * changes < steps) return {{}, parts};
+  return out;
+}
+
 // The longest held stretch, if it is at least one cell long.
 std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
                                       const std::function<double(std::size_t)>& time_s) {
@@ -325,8 +376,8 @@ std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps, std::
     const Found found = surest(all);
     if (found.departure < kSurely) break;
     changes.push_back(described(found, all, period_s));
-    changes.back().from_s = time_s(found.begin * rate_radps.size() / kTimes);
-    changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kTimes));
+    changes.back().from_s = time_s(found.begin * rate_radps.size() / kCells);
+    changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kCells));
     leave_out(found, all);
   }
   std::ranges::sort(changes, {}, &NoiseChange::from_s);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -23,6 +24,15 @@ double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
 }
 
 }  // namespace
+
+// Calls use(term, its part of theta).
+template <typename T, typename Use>
+void ModelCandidate::for_each_term(std::span<T> theta, Use use) const {
+  for (std::size_t at = kLevel; const auto& term : terms_) {
+    use(*term, theta.subspan(at, static_cast<std::size_t>(term->size())));
+    at += static_cast<std::size_t>(term->size());
+  }
+}
 
 ModelCandidate::ModelCandidate(std::string state, double period_s)
     : state_(std::move(state)), period_s_(period_s) {
@@ -53,11 +63,9 @@ void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const
   high[0] = 4.0;
   low[1] = -16.0;
   high[1] = 8.0;
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    term->bounds(low.subspan(at), high.subspan(at));
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(low, [&](const NoiseTerm& term, std::span<double> part) {
+    term.bounds(part, high.subspan(static_cast<std::size_t>(part.data() - low.data())));
+  });
 }
 
 std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
@@ -68,16 +76,13 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
   bounds(low, high);
   theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
   theta[1] = std::log(*std::ranges::min_element(spectrum.coarse)) + share();
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    const auto part = std::span(theta).subspan(at, static_cast<std::size_t>(term->size()));
+  for_each_term(std::span(theta), [&](const NoiseTerm& term, std::span<double> part) {
     part[0] = 0.0;
-    term->draw_shape(spectrum, random, part);
+    term.draw_shape(spectrum, random, part);
     std::ranges::fill(shape, 0.0);
-    term->add_density(part, spectrum, shape);
+    term.add_density(part, spectrum, shape);
     part[0] = std::log(under(spectrum, shape)) + share();
-    at += part.size();
-  }
+  });
   for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], low[i], high[i]);
   return theta;
 }
@@ -86,11 +91,9 @@ void ModelCandidate::density(std::span<const double> theta, const RecordSpectrum
                              std::span<double> out) const {
   const double q = std::exp(theta[0]), r = std::exp(theta[1]);
   for (std::size_t b = 0; b < out.size(); ++b) out[b] = r + q * spectrum.walk[b];
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    term->add_density(theta.subspan(at, static_cast<std::size_t>(term->size())), spectrum, out);
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    term.add_density(part, spectrum, out);
+  });
 }
 
 FilterSettings ModelCandidate::settings(std::span<const double> theta, double scale) const {
@@ -98,14 +101,11 @@ FilterSettings ModelCandidate::settings(std::span<const double> theta, double sc
   s.state = state_;
   s.process_noise = std::exp(theta[0]) * scale * scale / period_s_;
   s.measurement_noise = std::exp(theta[1]) * scale * scale;
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    std::vector<double> own =
-        term->parameters(theta.subspan(at, static_cast<std::size_t>(term->size())), period_s_);
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    std::vector<double> own = term.parameters(part, period_s_);
     own.back() *= scale * scale / s.process_noise;
     s.state_parameters.insert(s.state_parameters.end(), own.begin(), own.end());
-    at += static_cast<std::size_t>(term->size());
-  }
+  });
   return s;
 }
 
@@ -113,13 +113,9 @@ std::vector<CandidateFigure> ModelCandidate::figures(std::span<const double> the
   const FilterSettings s = settings(theta, scale);
   std::vector<CandidateFigure> all{{"process_noise", "rad^2/s^3", s.process_noise},
                                    {"measurement_noise", "rad^2/s^2", s.measurement_noise}};
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    const auto own =
-        term->figures(theta.subspan(at, static_cast<std::size_t>(term->size())), scale, period_s_);
-    all.insert(all.end(), own.begin(), own.end());
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    std::ranges::copy(term.figures(part, scale, period_s_), std::back_inserter(all));
+  });
   return all;
 }
 

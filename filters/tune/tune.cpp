@@ -11,7 +11,6 @@
 #include "filters/threads/share_out.h"
 #include "filters/tune/candidate.h"
 #include "filters/tune/choice.h"
-#include "filters/tune/hidden_walk.h"
 #include "filters/tune/maximum.h"
 #include "filters/tune/spectrum.h"
 #include "filters/tune/whittle.h"
@@ -20,7 +19,7 @@ namespace ifog {
 namespace {
 
 // Random starts per parameter in addition to the level's two.
-constexpr std::size_t kDraws = 30;
+constexpr std::size_t kDraws = 60;
 // Number of the spectrum's optima whose exact likelihood is computed, and largest loss for further
 // optimisation; the two likelihoods differ by a few units.
 constexpr std::size_t kLooked = 8;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/noise/noise_spectrum.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -136,72 +137,28 @@ double slow_edge(std::size_t samples) {
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
 }
 
-// Every second one of the first `count` cosines, without the constant, starting at `first`: all even or all
-// odd about the middle.
-Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
-  Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));
-  for (std::size_t k = first; k < count; k += 2)
-    for (std::size_t i = 0; i < n; ++i)
-      w(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>((k - first) / 2)) =
-          std::sqrt(2.0 / static_cast<double>(n)) *
-          std::cos(std::numbers::pi * static_cast<double>(k + 1) * (static_cast<double>(i) + 0.5) /
-                   static_cast<double>(n));
-  return w;
-}
-
-// w'Γw with the Toeplitz matrix Γ of a term; the columns of w are all even or all odd about the middle.
-Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
-                          std::size_t term) {
-  const Eigen::Index n = w.rows();
-  const auto at = [&](Eigen::Index lag) { return covariance[static_cast<std::size_t>(lag)][term]; };
-  if (term == kB) {
-    Eigen::VectorXd lag(n);
-    for (Eigen::Index i = 0; i < n; ++i) lag[i] = at(i);
-    const Eigen::Index half = (n + 1) / 2;
-    Eigen::MatrixXd product(half, w.cols());
-    for (Eigen::Index i = 0; i < half; ++i)
-      product.row(i) =
-          (2 * i + 1 == n ? 1.0 : 2.0) * (lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
-                                          lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i));
-    return w.topRows(half).transpose() * product;
-  }
-  // Covariances of quantisation and white noise are zero beyond lag 1. That of a random walk is −|lag|/2 from
-  // lag 2 on, plus a constant that zero-mean columns cancel.
-  const double walk = term == kK ? 1.0 : 0.0;
-  const Eigen::MatrixXd adjacent = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
-  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (adjacent + adjacent.transpose());
-  if (term == kK) {
-    Eigen::MatrixXd sums = w;
-    for (Eigen::Index i = 1; i < n; ++i) sums.row(i) += sums.row(i - 1);
-    out += sums.transpose() * sums;
-  }
-  return out;
-}
-
-// Stationary noise has no correlation between even and odd parts, so two halves are computed separately.
-std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples) {
+// The slow cosines of a stretch.
+void add_slow(const AngleMeans& means, std::size_t samples, std::vector<SlowCosine>& slow) {
   const int level = last_level(samples);
-  const std::size_t count = means.rates(level);
-  const auto n = static_cast<Eigen::Index>(count);
-  Eigen::VectorXd rate(n), ramp(n);
-  means.rates(level, 0, {rate.data(), count});
-  for (Eigen::Index i = 0; i < n; ++i)
-    ramp[i] = (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * std::exp2(level);
+  const auto n = static_cast<Eigen::Index>(means.rates(level));
+  const double step = std::exp2(level), length = static_cast<double>(n);
+  Eigen::VectorXd rate(n);
+  means.rates(level, 0, {rate.data(), means.rates(level)});
+  const Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(n, 0.5, length - 0.5) / length;
+  const std::span<const TermVariances> covariance = level_covariance(level);
   const TermVariances unit = level_unit(level);
-  std::array<SlowPart, 2> parts;
-  for (std::size_t first = 0; first < parts.size(); ++first) {
-    SlowPart& part = parts[first];
-    part.cosines = std::make_shared<const Eigen::MatrixXd>(cosines(count, slow_count(count), first));
-    part.level = level;
-    const Eigen::MatrixXd& w = *part.cosines;
-    part.value = w.transpose() * rate;
-    part.ramp = w.transpose() * ramp;
-    // A ramp is odd.
-    if (first == 1) part.ramp.setZero();
-    for (std::size_t t = 0; t < kTerms; ++t)
-      part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
+  for (std::size_t k = 1; k <= slow_count(means.rates(level)); ++k) {
+    const auto half_turns = static_cast<double>(k);
+    const Eigen::VectorXd w = std::sqrt(2.0 / length) * (std::numbers::pi * half_turns * place).cos();
+    SlowCosine cosine{.frequency = 0.5 * half_turns / (length * step), .value = w.dot(rate)};
+    cosine.ramp = w.dot((place * length).matrix()) * step;
+    for (Eigen::Index lag = 0; lag < n; ++lag) {
+      const double pairs = (lag == 0 ? 1.0 : 2.0) * w.head(n - lag).dot(w.tail(n - lag));
+      for (std::size_t t = 0; t < kTerms; ++t)
+        cosine.expected[t] += unit[t] * pairs * covariance[static_cast<std::size_t>(lag)][t];
+    }
+    slow.push_back(cosine);
   }
-  return parts;
 }
 
 // Spectrum of one level: all stretches that are long enough, above their own slow part.
@@ -286,8 +243,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::ranges::sort(slow, [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
   slow.resize(std::min(slow.size(), kMostSlowStretches));
   for (const std::size_t p : slow)
-    if (samples(p) >= kShortestStretch)
-      for (SlowPart& part : slow_parts(means[p], samples(p))) spectrum.slow.push_back(std::move(part));
+    if (samples(p) >= kShortestStretch) add_slow(means[p], samples(p), spectrum.slow);
   leave_out_lines(spectrum);
   return spectrum;
 }
