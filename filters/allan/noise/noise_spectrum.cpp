@@ -161,62 +161,43 @@ void add_slow(const AngleMeans& means, std::size_t samples, std::vector<SlowCosi
   }
 }
 
-// Spectrum of one level: all stretches that are long enough, above their own slow part.
-class Level {
- public:
-  Level(const Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
-    bins_.resize(power_.size());
-  }
-
-  void add(const AngleMeans& means, std::size_t samples) {
-    const std::size_t size = segment_.size(), count = means.rates(level_);
-    if (count < size || level_ > last_spectrum(samples)) return;
+// Spectrum of one level in ascending frequency: all stretches that are long enough, above their own slow cosines.
+std::vector<SpectralBin> spectrum_of(int level, const Segment& segment, std::span<const AngleMeans> means,
+                                     const AngleSum& sum) {
+  const std::size_t size = segment.size();
+  std::vector<SpectralBin> bins(size / 2);
+  Fourier fourier;
+  for (std::size_t p = 0; p < means.size(); ++p) {
+    const std::size_t samples = sum.parts()[p].angles - 1, count = means[p].rates(level);
+    const int last = last_spectrum(samples);
+    if (count < size || level > last) continue;
     // As many as fit with half overlap, spread from the first sample to the last.
-    std::size_t segments = (count - size + size / 2 - 1) / (size / 2) + 1;
-    segments = std::min(segments, kMostSegments);
+    const std::size_t segments = std::min((count - size + size / 2 - 1) / (size / 2) + 1, kMostSegments);
     const double hop =
         segments > 1 ? static_cast<double>(count - size) / static_cast<double>(segments - 1) : 0.0;
-    std::ranges::fill(power_, 0.0);
-    std::vector<double> rate(size);
+    std::vector<double> power(size / 2), rate(size);
     for (std::size_t s = 0; s < segments; ++s) {
-      const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
-      means.rates(level_, begin, rate);
-      segment_.add_power(rate, fourier_, power_);
+      means[p].rates(level, static_cast<std::size_t>(hop * static_cast<double>(s)), rate);
+      segment.add_power(rate, fourier, power);
     }
     const double degrees =
         2.0 / static_cast<double>(size) *
-        segment_.effective_samples(segments, std::max<std::size_t>(1, static_cast<std::size_t>(hop)));
-    const double bottom = level_ < last_spectrum(samples) ? kBottomOfLevel : slow_edge(samples);
-    const double top = level_ == 0 ? 0.5 : kTopOfLevel;
-    for (std::size_t k = 1; k < bins_.size(); ++k) {
+        segment.effective_samples(segments, std::max<std::size_t>(1, static_cast<std::size_t>(hop)));
+    const double bottom = level < last ? kBottomOfLevel : slow_edge(samples);
+    const double top = level == 0 ? 0.5 : kTopOfLevel;
+    for (std::size_t k = 1; k < bins.size(); ++k) {
       const double frequency = static_cast<double>(k) / static_cast<double>(size);
       if (frequency <= bottom || frequency > top) continue;
-      bins_[k].power += power_[k] / static_cast<double>(segments) * degrees;
-      bins_[k].degrees += degrees;
+      bins[k].frequency = frequency / std::exp2(level);
+      bins[k].expected = segment.expected(level, k);
+      bins[k].power += power[k] / static_cast<double>(segments) * degrees;
+      bins[k].degrees += degrees;
     }
   }
-
-  // In ascending frequency.
-  [[nodiscard]] std::vector<SpectralBin> bins() const {
-    std::vector<SpectralBin> out;
-    for (std::size_t k = 1; k < bins_.size(); ++k) {
-      SpectralBin bin = bins_[k];
-      if (bin.degrees == 0.0) continue;
-      bin.frequency = static_cast<double>(k) / static_cast<double>(segment_.size()) / std::exp2(level_);
-      bin.power /= bin.degrees;
-      bin.expected = segment_.expected(level_, k);
-      out.push_back(bin);
-    }
-    return out;
-  }
-
- private:
-  const Segment& segment_;
-  int level_;
-  Fourier fourier_;
-  std::vector<double> power_;
-  std::vector<SpectralBin> bins_;
-};
+  std::erase_if(bins, [](const SpectralBin& bin) { return bin.degrees == 0.0; });
+  for (SpectralBin& bin : bins) bin.power /= bin.degrees;
+  return bins;
+}
 
 }  // namespace
 
@@ -228,9 +209,8 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::vector<AngleMeans> means;
   for (const AngleSum::Part& part : sum.parts()) means.emplace_back(sum.angle(), part.first, part.angles);
   for (int l = last_spectrum(sum.longest()); l >= 0; --l) {
-    Level level(segment, l);
-    for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);
-    for (const SpectralBin& bin : level.bins()) spectrum.bins.push_back(bin);
+    const std::vector<SpectralBin> bins = spectrum_of(l, segment, means, sum);
+    spectrum.bins.insert(spectrum.bins.end(), bins.begin(), bins.end());
   }
   std::ranges::sort(spectrum.bins, {}, &SpectralBin::frequency);
   // Above, a logger that holds values takes more than 1.3 % of the power.
