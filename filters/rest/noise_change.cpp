@@ -5,9 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 
-#include "filters/allan/runs.h"
 #include "filters/distributions/median.h"
 #include "filters/units/told_time.h"
 
@@ -307,71 +305,19 @@ void leave_out(const Found& found, std::vector<NoiseLevel>& all) {
   }
 }
 
-// Stretches where the value does not change at all although it changes elsewhere: the logger repeats its last value, or
-// the sensor has not started. They are no noise.
-struct HeldApart {
-  std::vector<Stretch> held, moving;  // in order; together all of `parts`
-};
-
-// Splits `parts`. Held: runs of equal values from 64 samples and 1/4096 of the record on, if at least half of the other
-// steps are changes. So a sensor whose resolution is coarse against its noise has no held stretches.
-HeldApart apart_from_held(std::span<const double> rate, const std::vector<Stretch>& parts) {
-  constexpr std::size_t kLeastHeld = 64, kMostRuns = 4096;
-  const std::size_t least = std::max(kLeastHeld, rate.size() / kMostRuns);
-  HeldApart out;
-  std::size_t steps = 0, changes = 0;  // outside held stretches
-  for (const Stretch& part : parts) {
-    Stretch moving{part.begin, part.begin};
-    std::size_t values = 0;  // runs in `moving`
-    const auto end_moving = [&] {
-      if (moving.size() == 0) return;
-      out.moving.push_back(moving);
-      steps += moving.size() - 1;
-      changes += std::exchange(values, 0) - 1;
-    };
-    for_each_run(rate, {&part, 1}, [&](const Run& run) {
-      const std::size_t end = run.begin + run.length;
-      if (run.length < least) {
-        moving.end = end, ++values;
-        return;
-      }
-      end_moving();
-      out.held.push_back({run.begin, end});
-      moving = {end, end};
-    });
-    end_moving();
-  }
-  if (out.held.empty() || steps < kLeastHeld || 2 * changes < steps) return {{}, parts};
-  return out;
-}
-
-// The longest held stretch, if it is at least one cell long.
-std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
-                                      const std::function<double(std::size_t)>& time_s) {
-  std::erase_if(held, [&](const Stretch& each) { return each.size() * kTimes < samples; });
-  std::ranges::sort(held, std::ranges::greater{}, &Stretch::size);
-  held.resize(std::min(held.size(), kMostChanges));
-  std::vector<NoiseChange> out;
-  out.reserve(held.size());
-  for (const Stretch& each : held)
-    out.push_back({time_s(each.begin), time_s(each.end - 1), 0.0, {0.0, 0.5 / period_s}});
-  return out;
-}
-
 }  // namespace
 
 std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps, std::span<const Stretch> parts,
                                        double period_s, const std::function<double(std::size_t)>& time_s) {
-  const HeldApart apart = apart_from_held(rate_radps, {parts.begin(), parts.end()});
   Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
-  for (const Stretch& part : apart.moving) {
+  for (const Stretch& part : parts) {
     pyramid.begin();
     for (std::size_t i = part.begin; i < part.end; ++i) pyramid.take(rate_radps[i], i);
   }
   std::vector<NoiseLevel> all;
   for (const Octave& octave : pyramid.octaves()) all.push_back(noise_level_of(octave));
   while (!all.empty() && all.back().root.empty()) all.pop_back();
-  std::vector<NoiseChange> changes = stands_still(apart.held, rate_radps.size(), period_s, time_s);
+  std::vector<NoiseChange> changes;
   while (changes.size() < kMostChanges) {
     const Found found = surest(all);
     if (found.departure < kSurely) break;
@@ -391,10 +337,6 @@ std::string in_words(std::span<const NoiseChange> changes) {
     const NoiseChange& change = changes[i];
     const std::string from = told_time(change.from_s), to = told_time(change.to_s);
     words += i > 0 ? "," : "";
-    if (!(change.times > 0.0)) {
-      words += " it stands still in " + from + " … " + to + " s";
-      continue;
-    }
     words += formatted(" %.2g times the noise in ", change.times) + from + " … " + to + " s";
     words += change.range_hz.low > 0.0
                  ? formatted(" (%.2g to %.3g Hz)", change.range_hz.low, change.range_hz.high)

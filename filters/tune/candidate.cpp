@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/state_models/state_model.h"
@@ -15,12 +16,18 @@ namespace {
 
 constexpr double kLeastLog = -34.0;  // e^-34: a level that is constant within any record
 
-// Largest factor of `shape` that stays below the coarse spectrum.
+// Exceeded by nine tenths of the bins.
+double low_decile(std::vector<double> values) {
+  const auto at = values.begin() + std::ssize(values) / 10;
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+// Factor of `shape` that stays below most of the spectrum.
 double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
-  double least = 1e300;
-  for (std::size_t b = 0; b < spectrum.bins(); ++b)
-    if (shape[b] > 0.0) least = std::min(least, spectrum.coarse[b] / shape[b]);
-  return least;
+  std::vector<double> ratio(spectrum.density);
+  for (std::size_t b = 0; b < ratio.size(); ++b) ratio[b] /= shape[b];
+  return low_decile(std::move(ratio));
 }
 
 }  // namespace
@@ -75,10 +82,10 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
   std::vector<double> low(theta.size()), high(theta.size());
   bounds(low, high);
   theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
-  theta[1] = std::log(*std::ranges::min_element(spectrum.coarse)) + share();
+  theta[1] = std::log(low_decile(spectrum.density)) + share();
   for_each_term(std::span(theta), [&](const NoiseTerm& term, std::span<double> part) {
     part[0] = 0.0;
-    term.draw_shape(spectrum, random, part);
+    term.draw_shape(random, part);
     std::ranges::fill(shape, 0.0);
     term.add_density(part, spectrum, shape);
     part[0] = std::log(under(spectrum, shape)) + share();

@@ -4,48 +4,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <iterator>
-#include <numbers>
 
 #include "filters/state_models/state_name.h"
 
 namespace ifog {
 namespace {
-
-using Random = std::mt19937_64;
-
-double between(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-// Coefficients of B, B^2, … in the product of the factors 1 - root B.
-std::vector<double> expanded(std::span<const std::complex<double>> roots) {
-  std::vector<std::complex<double>> poly{1.0};
-  for (const auto& root : roots) {
-    poly.push_back(0.0);
-    for (std::size_t i = poly.size() - 1; i > 0; --i) poly[i] -= root * poly[i - 1];
-  }
-  std::vector<double> out;
-  for (std::size_t i = 1; i < poly.size(); ++i) out.push_back(poly[i].real());
-  return out;
-}
-
-// Real roots and pairs, at a logarithmically drawn distance inside the unit circle.
-std::vector<std::complex<double>> drawn_roots(int count, double nearest, Random& random) {
-  std::vector<std::complex<double>> roots;
-  while (static_cast<int>(roots.size()) < count) {
-    const double radius = 1.0 - std::exp(between(random, std::log(nearest), std::log(0.95)));
-    if (static_cast<int>(roots.size()) + 2 <= count && between(random, 0.0, 1.0) < 0.5) {
-      const auto root = std::polar(radius, between(random, 0.0, std::numbers::pi));
-      roots.push_back(root);
-      roots.push_back(std::conj(root));
-    } else {
-      roots.emplace_back(between(random, 0.0, 1.0) < 0.75 ? radius : -radius);
-    }
-  }
-  return roots;
-}
 
 // theta: ln variance of the innovation e, atanh of p partial autocorrelations and of q of the MA part.
 class ArmaTerm : public NoiseTerm {
@@ -58,16 +22,9 @@ class ArmaTerm : public NoiseTerm {
     std::fill_n(low.begin() + 1, p_ + q_, -kMost);
     std::fill_n(high.begin() + 1, p_ + q_, kMost);
   }
-  void draw_shape(const RecordSpectrum& spectrum, Random& random, std::span<double> theta) const override {
-    const auto place = [&](std::size_t first, std::vector<double> coefficients) {
-      std::transform(coefficients.begin(), coefficients.end(), coefficients.begin(), std::negate<>());
-      const std::vector<double> partial = partial_from_ar(coefficients);
-      for (std::size_t i = 0; i < partial.size(); ++i)
-        theta[first + i] = std::clamp(std::atanh(std::clamp(partial[i], -0.99999, 0.99999)), -kMost, kMost);
-    };
-    const double nearest = std::max(1e-5, 4.0 / static_cast<double>(spectrum.samples));
-    place(1, expanded(drawn_roots(p_, nearest, random)));
-    place(1 + count(p_), expanded(drawn_roots(q_, 0.01, random)));
+  void draw_shape(std::mt19937_64& random, std::span<double> theta) const override {
+    std::uniform_real_distribution<double> partial(-kMost, kMost);
+    for (double& each : theta.subspan(1)) each = partial(random);
   }
   void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
@@ -163,17 +120,6 @@ std::vector<double> ar_from_partial(std::span<const double> partial) {
     for (std::size_t i = 0; i < k; ++i) phi[i] = last[i] - partial[k] * last[k - 1 - i];
   }
   return phi;
-}
-
-std::vector<double> partial_from_ar(std::vector<double> phi) {
-  std::vector<double> partial(phi.size());
-  for (std::size_t k = phi.size(); k-- > 0;) {
-    partial[k] = phi[k];
-    const std::vector<double> last = phi;
-    for (std::size_t i = 0; i < k; ++i)
-      phi[i] = (last[i] + partial[k] * last[k - 1 - i]) / (1.0 - partial[k] * partial[k]);
-  }
-  return partial;
 }
 
 std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name) {

@@ -20,9 +20,9 @@ namespace {
 
 // Random starts per parameter in addition to the level's two.
 constexpr std::size_t kDraws = 60;
-// Number of the spectrum's optima whose exact likelihood is computed; the best is optimised further. The two likelihoods
-// differ by a few units.
-constexpr std::size_t kLooked = 8;
+// Number of the spectrum's optima whose exact likelihood is computed, and of the best of these, which are optimised further;
+// the two likelihoods differ by a few units.
+constexpr std::size_t kLooked = 8, kFollowed = 3;
 
 // Axes divided by their own scales, so that all count equally.
 struct Data {
@@ -87,10 +87,14 @@ struct Fit {
 Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const RecordObjective& objective) {
   const std::size_t draws = kDraws * static_cast<std::size_t>(candidate.size() - 1);
   const std::vector<WhittleOptimum> optima = whittle_optima(candidate, spectrum, draws);
-  Fit best;
+  std::vector<Fit> starts;
   for (std::size_t i = 0; i < std::min(optima.size(), kLooked); ++i)
-    if (const double cost = objective(optima[i].theta); cost < best.cost) best = {optima[i].theta, cost, {}};
-  best.cost = find_maximum(objective, whittle_information(candidate, spectrum, best.theta), best.theta);
+    starts.push_back({optima[i].theta, objective(optima[i].theta), {}});
+  std::ranges::sort(starts, {}, &Fit::cost);
+  starts.resize(std::min(starts.size(), kFollowed));
+  for (Fit& start : starts)
+    start.cost = find_maximum(objective, whittle_information(candidate, spectrum, start.theta), start.theta);
+  Fit best = std::ranges::min(starts, {}, &Fit::cost);
   best.information = whittle_information(candidate, spectrum, best.theta);
   return best;
 }
@@ -101,25 +105,24 @@ std::vector<TunedFigure> figures_with_errors(const ModelCandidate& candidate,
                                              const Eigen::MatrixXd& covariance,
                                              const std::vector<bool>& known) {
   const auto base = candidate.figures(theta, scale);
-  std::vector<std::vector<CandidateFigure>> moved;
+  Eigen::MatrixXd slope(std::ssize(base), std::ssize(theta));
   constexpr double kStep = 1e-6;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     std::vector<double> other = theta;
     other[i] += kStep;
-    moved.push_back(candidate.figures(other, scale));
+    const auto moved = candidate.figures(other, scale);
+    for (std::size_t f = 0; f < base.size(); ++f)
+      slope(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i)) =
+          (moved[f].value - base[f].value) / kStep;
   }
   std::vector<TunedFigure> out;
   for (std::size_t f = 0; f < base.size(); ++f) {
-    Eigen::VectorXd gradient(static_cast<Eigen::Index>(theta.size()));
+    const Eigen::RowVectorXd gradient = slope.row(static_cast<Eigen::Index>(f));
     bool all_known = true;
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-      const double slope = (moved[i][f].value - base[f].value) / kStep;
-      gradient(static_cast<Eigen::Index>(i)) = slope;
-      if (slope != 0.0 && !known[i]) all_known = false;
-    }
-    TunedFigure figure{base[f].name, base[f].unit, base[f].value, std::nullopt};
-    if (all_known) figure.std_error = std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
-    out.push_back(std::move(figure));
+    for (std::size_t i = 0; i < theta.size(); ++i)
+      all_known = all_known && (known[i] || gradient[static_cast<Eigen::Index>(i)] == 0.0);
+    out.push_back({base[f].name, base[f].unit, base[f].value, std::nullopt});
+    if (all_known) out.back().std_error = std::sqrt(std::max(0.0, gradient.dot(gradient * covariance)));
   }
   return out;
 }
