@@ -76,16 +76,19 @@ void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const
 }
 
 std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
-  // Each part gets a random share of the largest factor.
-  const auto share = [&] { return std::log(std::uniform_real_distribution<double>(0.02, 1.0)(random)); };
+  // Shapes are drawn within their bounds; each part gets a random share of the largest factor.
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto share = [&] { return std::log(between(0.02, 1.0)); };
   std::vector<double> theta(static_cast<std::size_t>(size_)), shape(spectrum.bins());
   std::vector<double> low(theta.size()), high(theta.size());
   bounds(low, high);
+  for (std::size_t i = kLevel; i < theta.size(); ++i) theta[i] = between(low[i], high[i]);
   theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
   theta[1] = std::log(low_decile(spectrum.density)) + share();
   for_each_term(std::span(theta), [&](const NoiseTerm& term, std::span<double> part) {
     part[0] = 0.0;
-    term.draw_shape(random, part);
     std::ranges::fill(shape, 0.0);
     term.add_density(part, spectrum, shape);
     part[0] = std::log(under(spectrum, shape)) + share();

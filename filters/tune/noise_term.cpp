@@ -22,10 +22,6 @@ class ArmaTerm : public NoiseTerm {
     std::fill_n(low.begin() + 1, p_ + q_, -kMost);
     std::fill_n(high.begin() + 1, p_ + q_, kMost);
   }
-  void draw_shape(std::mt19937_64& random, std::span<double> theta) const override {
-    std::uniform_real_distribution<double> partial(-kMost, kMost);
-    for (double& each : theta.subspan(1)) each = partial(random);
-  }
   void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
     const std::vector<double> c = coefficients(theta);

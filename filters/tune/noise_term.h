@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,8 +22,6 @@ class NoiseTerm {
   virtual ~NoiseTerm() = default;
   [[nodiscard]] virtual int size() const = 0;  // number of free parameters; the first is ln of a variance
   virtual void bounds(std::span<double> low, std::span<double> high) const = 0;
-  // Random shape; does not change the first parameter.
-  virtual void draw_shape(std::mt19937_64& random, std::span<double> theta) const = 0;
   // Adds the expected density at each bin of the spectrum.
   virtual void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                            std::span<double> out) const = 0;
