@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/angle_sum.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -100,33 +100,22 @@ std::vector<Stretch> AngleSum::negligible(std::span<const double> rate_radps,
 AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches, Holes holes) {
   std::vector<Stretch> chosen;
   if (holes == Holes::kFilledIfNegligible) stretches = chosen = negligible(rate_radps, stretches);
-  find_mean(rate_radps, stretches);
+  double sum = 0.0;
+  std::size_t total = 0;
+  for (const Stretch& s : stretches) {
+    sum +=
+        Eigen::Map<const Eigen::ArrayXd>(s.of(rate_radps).data(), static_cast<Eigen::Index>(s.size())).sum();
+    total += s.size();
+  }
+  mean_ = total > 0 ? sum / static_cast<double>(total) : 0.0;
   constexpr std::size_t kSome = 100'000;
   for (const Stretch& s : stretches.first(std::min<std::size_t>(1, stretches.size()))) {
     const Stretch some{s.begin, std::min(s.end, s.begin + kSome)};
     held_ = held_samples(rate_radps, {&some, 1});
   }
-  std::size_t total = stretches.size();
-  for (const Stretch& s : stretches) total += s.size() + s.lost;
+  for (const Stretch& s : stretches) total += 1 + s.lost;
   angle_.reserve(total);
   sum_up(rate_radps, stretches);
-}
-
-void AngleSum::find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
-  constexpr std::size_t kLanes = 4;  // independent sums for instruction-level parallelism
-  std::array<ExactSum, kLanes> sum;
-  std::size_t total = 0;
-  for (const Stretch& s : stretches) {
-    total += s.size();
-    const std::span<const double> rates = s.of(rate_radps);
-    std::size_t i = 0;
-    for (; i + kLanes <= rates.size(); i += kLanes)
-      for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane].add(rates[i + lane]);
-    for (; i < rates.size(); ++i) sum[0].add(rates[i]);
-  }
-  double all = 0.0;
-  for (const ExactSum& each : sum) all += each.value();
-  mean_ = total > 0 ? all / static_cast<double>(total) : 0.0;
 }
 
 void AngleSum::sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches) {

@@ -38,7 +38,6 @@ class AngleSum {
  private:
   static std::vector<Stretch> negligible(std::span<const double> rate_radps,
                                          std::span<const Stretch> stretches);
-  void find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches);
   void sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches);
 
   Samples angle_;

@@ -81,11 +81,6 @@ Kind kind_of(Deviation kind) {
   return {kind, 2, 0, 2.0};
 }
 
-std::size_t places(const Kind& kind, std::size_t angles, std::size_t m) {
-  const std::size_t reach = kind.span * m - kind.less;
-  return angles > reach ? angles - reach : 0;
-}
-
 // Squares for each m, in one pass over the angles, block by block.
 std::vector<ExactSum> squares_in_blocks(const AngleSum& sum, const Kind& kind,
                                         std::span<const std::size_t> m) {
@@ -100,7 +95,7 @@ std::vector<ExactSum> squares_in_blocks(const AngleSum& sum, const Kind& kind,
     std::vector<double> partial(blocks * m.size());
     share_out(blocks, part.angles * m.size() > kWorthThreads ? 0 : 1, [&](std::size_t b) {
       for (std::size_t k = 0; k < m.size(); ++k) {
-        const std::size_t all = places(kind, part.angles, m[k]), at = b * kBlock;
+        const std::size_t all = differences_of(kind.which, m[k], part.angles - 1), at = b * kBlock;
         if (all > at) partial[b * m.size() + k] = block_at(x + at, m[k], std::min(kBlock, all - at));
       }
     });
@@ -116,7 +111,7 @@ ExactSum modified_squares(const AngleSum& sum, const Kind& kind, std::size_t m) 
   for (const AngleSum::Part& part : sum.parts()) {
     const double* const x = sum.angle().data() + part.first;
     const Streams at{x, x + m, x + 2 * m, x + 3 * m};
-    const std::size_t all = places(kind, part.angles, m);
+    const std::size_t all = differences_of(kind.which, m, part.angles - 1);
     ExactSum neighbours;
     for (std::size_t i = 0; i < m && all > 0; ++i) neighbours.add(second_difference(at, i, 0));
     for (std::size_t i = 0; i < all; ++i) {
@@ -144,7 +139,8 @@ std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::
   for (std::size_t k = 0; k < m.size(); ++k) {
     DeviationPoint& point = points[k];
     point.m = m[k];
-    for (const AngleSum::Part& part : sum.parts()) point.terms += places(kind, part.angles, m[k]);
+    for (const AngleSum::Part& part : sum.parts())
+      point.terms += differences_of(kind.which, m[k], part.angles - 1);
     const double samples = static_cast<double>(m[k]);
     point.variance = point.terms == 0 ? std::numeric_limits<double>::quiet_NaN()
                                       : squares[k].value() / static_cast<double>(point.terms) /
@@ -155,8 +151,29 @@ std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::
 
 std::size_t longest_average(Deviation which, std::size_t samples) {
   const Kind kind = kind_of(which);
-  // places() > 0: span·m − less < samples + 1.
+  // A difference fits: span·m − less < samples + 1.
   return (samples + kind.less) / kind.span;
+}
+
+std::size_t differences_of(Deviation which, std::size_t m, std::size_t samples) {
+  const Kind kind = kind_of(which);
+  const std::size_t reach = kind.span * m - kind.less;
+  return samples + 1 > reach ? samples + 1 - reach : 0;
+}
+
+ReportedDeviations reported_deviations(std::span<const double> rate_radps, std::span<const Stretch> parts,
+                                       double period_s) {
+  ReportedDeviations found;
+  if (parts.empty()) return found;
+  const AngleSum sum(rate_radps, parts);
+  for (std::size_t t = 0; t < kReportedTaus.size(); ++t) {
+    const double samples = std::round(kReportedTaus[t] / period_s);
+    if (samples < 1.0 || std::abs(samples * period_s / kReportedTaus[t] - 1.0) > 0.1) continue;
+    const std::array<std::size_t, 1> m{static_cast<std::size_t>(samples)};
+    const DeviationPoint point = deviation(sum, m).front();
+    if (point.terms > 0) found[t] = std::sqrt(point.variance);
+  }
+  return found;
 }
 
 std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade) {

@@ -2,8 +2,11 @@
 #include "filters/allan/power_law.h"
 
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <set>
 #include <vector>
 
 namespace ifog {
@@ -12,7 +15,7 @@ namespace {
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 // Difference of the angle or of its running sum: coefficients at multiples of m; variance = mean square /
-// (norm·m^power). It reaches over order·m − `less` angles.
+// (norm·m^power).
 struct Difference {
   std::vector<double> weight;
   double norm, power;
@@ -80,87 +83,43 @@ TermVariances covariance_between(const Difference& d, double m, double lag) {
   return gamma;
 }
 
-// Eight-point Gauss–Legendre, positive half (Abramowitz and Stegun, table 25.4).
-constexpr std::array<double, 4> kNode{0.183434642495649805, 0.525532409916328986, 0.796666477413626740,
-                                      0.960289856497536232};
-constexpr std::array<double, 4> kWeight{0.362683783378361983, 0.313706645877887287, 0.222381034453374471,
-                                        0.101228536290376259};
-
-// Lags summed singly on either side of a bend; also the shortest panel.
-constexpr long long kSummedExactly = 24;
+// Intervals up to this length are summed lag by lag.
+constexpr std::size_t kSummedSingly = 64;
 // Beyond this many spans only flicker contributes, falling at least with the fourth power of the lag.
-constexpr long long kReach = 8;
+constexpr std::size_t kReach = 8;
 
-// Σ over lags of (number of pairs at that lag)·γⱼ·γₗ. Both factors are even, so only lags >= 0 are summed.
-class LagSum {
- public:
-  LagSum(const Difference& difference, std::size_t m, std::span<const double> places)
-      : difference_(difference), m_(static_cast<double>(m)), places_(places) {
-    const auto order = static_cast<long long>(difference.weight.size()) - 1;
-    const auto step = static_cast<long long>(m);
-    double most = 0.0;
-    for (const double p : places) most = std::max(most, p);
-    const long long end = std::min(static_cast<long long>(most), kReach * order * step);
-    std::vector<long long> bends{0, 1, end};
-    for (long long k = 1; k <= order; ++k) {
-      bends.push_back(k * step);
-      bends.push_back(k * step + 1);  // spike at k·m
-    }
-    for (const double p : places) bends.push_back(static_cast<long long>(p));
-    std::ranges::sort(bends);
-    bends.erase(std::unique(bends.begin(), bends.end()), bends.end());
-    for (std::size_t i = 0; i + 1 < bends.size(); ++i)
-      if (bends[i] >= 0 && bends[i + 1] <= end) between(bends[i], bends[i + 1]);
-  }
-  [[nodiscard]] const std::array<std::array<double, kTerms>, kTerms>& sums() const { return sums_; }
-
- private:
-  void add(double lag, double times) {
-    const TermVariances gamma = covariance_between(difference_, m_, lag);
+// Σ over lags of (number of pairs at that lag)·γγ'. All factors are even, so only lags >= 0 are summed.
+Eigen::Matrix4d sum_over_lags(const Difference& difference, std::size_t m,
+                              std::span<const std::size_t> places) {
+  Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
+  const auto add = [&](double lag, double times) {
+    const TermVariances at = covariance_between(difference, static_cast<double>(m), lag);
+    const Eigen::Map<const Eigen::Vector4d> gamma(at.data());
     double pairs = 0.0;
-    for (const double p : places_) pairs += std::max(0.0, p - lag);
-    pairs *= lag == 0.0 ? times : 2.0 * times;
-    for (std::size_t j = 0; j < kTerms; ++j)
-      for (std::size_t l = 0; l < kTerms; ++l) sums_[j][l] += pairs * gamma[j] * gamma[l];
+    for (const std::size_t p : places) pairs += std::max(0.0, static_cast<double>(p) - lag);
+    sums += (lag == 0.0 ? 1.0 : 2.0) * times * pairs * gamma * gamma.transpose();
+  };
+  const std::size_t spans = kReach * (difference.weight.size() - 1),
+                    end = std::min(std::ranges::max(places), spans * m);
+  // The covariance bends at multiples of m, where the spike of quantisation is, too; the pairs where a stretch ends.
+  std::set<std::size_t> bends(places.begin(), places.end());
+  bends.insert(end);
+  for (std::size_t k = 0; k <= spans; ++k) bends.insert({k * m, k * m + 1});
+  for (auto at = bends.begin(); *at < end;) {
+    const std::size_t begin = *at, next = *++at;
+    if (next - begin <= kSummedSingly) {
+      for (std::size_t lag = begin; lag < next; ++lag) add(static_cast<double>(lag), 1.0);
+      continue;
+    }
+    using Rule = boost::math::quadrature::gauss<double, 20>;
+    const double half = 0.5 * static_cast<double>(next - begin),
+                 middle = static_cast<double>(begin) - 0.5 + half;
+    for (std::size_t k = 0; k < Rule::abscissa().size(); ++k)
+      for (const double side : {-half, half})
+        add(middle + side * Rule::abscissa()[k], half * Rule::weights()[k]);
   }
-
-  void panel(long long begin, long long end) {
-    if (end - begin <= kSummedExactly) {
-      for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);
-      return;
-    }
-    const double half = 0.5 * static_cast<double>(end - begin);
-    const double middle = static_cast<double>(begin) - 0.5 + half;
-    for (std::size_t k = 0; k < kNode.size(); ++k) {
-      add(middle - half * kNode[k], half * kWeight[k]);
-      add(middle + half * kNode[k], half * kWeight[k]);
-    }
-  }
-
-  // Lags begin … end − 1 with bends at both ends: panels double in length towards the middle.
-  void between(long long begin, long long end) {
-    if (end - begin <= 4 * kSummedExactly) {
-      for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);
-      return;
-    }
-    long long low = begin, high = end, length = kSummedExactly;
-    while (high - low > 4 * length) {
-      panel(low, low + length);
-      panel(high - length, high);
-      low += length;
-      high -= length;
-      length = low - begin;
-    }
-    const long long middle = low + (high - low) / 2;
-    panel(low, middle);
-    panel(middle, high);
-  }
-
-  const Difference& difference_;
-  double m_;
-  std::span<const double> places_;
-  std::array<std::array<double, kTerms>, kTerms> sums_{};
-};
+  return sums;
+}
 
 }  // namespace
 
@@ -173,22 +132,17 @@ std::array<double, kTerms> covariance_of_differences(Deviation kind, std::size_t
   return covariance_between(difference_of(kind), static_cast<double>(m), lag);
 }
 
-std::size_t differences_of(Deviation kind, std::size_t m, std::size_t samples) {
-  const Difference& d = difference_of(kind);
-  const std::size_t reach = (d.weight.size() - 1) * m - (d.of_sum ? 1 : 0);
-  return samples + 1 > reach ? samples + 1 - reach : 0;
+TermVariances covariance_of_sum_differences(std::size_t m, double lag) {
+  static const Difference kSecond{{1.0, -2.0, 1.0}, 1.0, 0.0, true};
+  return covariance_between(kSecond, static_cast<double>(m), lag);
 }
 
 double expected_variance(Deviation kind, const TermVariances& variances, std::size_t averaged) {
   const double m = static_cast<double>(averaged);
   const Difference& d = difference_of(kind);
-  double variance = 0.0;
-  for (std::size_t a = 0; a < d.weight.size(); ++a)
-    for (std::size_t b = 0; b < d.weight.size(); ++b) {
-      const auto g = covariance_of(d, (static_cast<double>(a) - static_cast<double>(b)) * m);
-      for (std::size_t t = 0; t < kTerms; ++t) variance += variances[t] * d.weight[a] * d.weight[b] * g[t];
-    }
-  return variance / (d.norm * std::pow(m, d.power));
+  const TermVariances square = covariance_between(d, m, 0.0);
+  return std::inner_product(square.begin(), square.end(), variances.begin(), 0.0) /
+         (d.norm * std::pow(m, d.power));
 }
 
 double expected_variance(Deviation kind, Term term, std::size_t m) {
@@ -200,25 +154,18 @@ double expected_variance(Deviation kind, Term term, std::size_t m) {
 EstimateVariance::EstimateVariance(Deviation kind, std::size_t m, std::span<const std::size_t> samples)
     : kind_(kind), m_(m) {
   const Difference& d = difference_of(kind);
-  std::vector<double> places;
-  double all = 0.0;
+  std::vector<std::size_t> places;
   for (const std::size_t n : samples)
-    if (const std::size_t fit = differences_of(kind, m, n); fit > 0) {
-      places.push_back(static_cast<double>(fit));
-      all += places.back();
-    }
+    if (const std::size_t fit = differences_of(kind, m, n); fit > 0) places.push_back(fit);
   if (places.empty()) return;
-  sums_ = LagSum(d, m, places).sums();
+  const double all = static_cast<double>(std::reduce(places.begin(), places.end()));
   const double scale = d.norm * std::pow(static_cast<double>(m), d.power) * all;
-  for (auto& row : sums_)
-    for (double& s : row) s *= 2.0 / (scale * scale);
+  sums_ = 2.0 / (scale * scale) * sum_over_lags(d, m, places);
 }
 
-double EstimateVariance::at(const TermVariances& v) const {
-  double value = 0.0;
-  for (std::size_t j = 0; j < kTerms; ++j)
-    for (std::size_t l = 0; l < kTerms; ++l) value += v[j] * v[l] * sums_[j][l];
-  return value;
+double EstimateVariance::at(const TermVariances& variances) const {
+  const Eigen::Map<const Eigen::Vector4d> v(variances.data());
+  return v.dot(sums_ * v);
 }
 
 double EstimateVariance::degrees(const TermVariances& v) const {

@@ -3,6 +3,7 @@
 // estimate. All in samples: the angle in (rad/s × sample), one sample time = 1.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -26,8 +27,8 @@ using TermVariances = std::array<double, kTerms>;
 // term. For kModified lag must be whole or far from zero.
 [[nodiscard]] std::array<double, kTerms> covariance_of_differences(Deviation kind, std::size_t m, double lag);
 
-// Number of places where a difference fits into a stretch of `samples`.
-[[nodiscard]] std::size_t differences_of(Deviation kind, std::size_t m, std::size_t samples);
+// The same for second differences of the angle's running sum.
+[[nodiscard]] TermVariances covariance_of_sum_differences(std::size_t m, double lag);
 
 // Expected variance at m for one unit of a term; Allan: 3/m², 1/m, 2 ln 2/π, m/3.
 [[nodiscard]] double expected_variance(Deviation kind, Term term, std::size_t m);
@@ -37,8 +38,8 @@ using TermVariances = std::array<double, kTerms>;
 // pairs of places, of the squared covariance of their differences (Isserlis). Greenhall and Riley (35th PTTI,
 // 2003) sum this for one power law; here the covariance is that of a sum of terms.
 //
-// The sum is exact where the covariance bends and uses widening Gauss–Legendre panels elsewhere. The result
-// is quadratic in the terms' variances, so the sums are computed once for all sets of variances.
+// The sum is exact where the covariance bends and uses Gauss–Legendre rules elsewhere. The result is quadratic in the
+// terms' variances, so the sums are computed once for all sets of variances.
 class EstimateVariance {
  public:
   // samples: lengths of the stretches, assumed independent. Stretches too short for the difference are
@@ -52,7 +53,7 @@ class EstimateVariance {
  private:
   Deviation kind_;
   std::size_t m_;
-  std::array<std::array<double, kTerms>, kTerms> sums_{};
+  Eigen::Matrix4d sums_ = Eigen::Matrix4d::Zero();
 };
 
 }  // namespace ifog

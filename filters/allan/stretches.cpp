@@ -2,7 +2,6 @@
 #include "filters/allan/stretches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -61,33 +60,6 @@ double mean_period(std::span<const double> time_s, double period_s, bool scatter
   });
   if (gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
   return between_s / steps;
-}
-
-// Shortest and longest step; if the longest is no gap, there is none.
-struct Extremes {
-  double least_s = std::numeric_limits<double>::infinity(), most_s = -least_s;
-
-  [[nodiscard]] bool gapless(double period_s) const { return most_s <= kGap * period_s; }
-  // Largest distance of a step from the period.
-  [[nodiscard]] double jitter_s(double period_s) const {
-    return std::max(std::abs(least_s - period_s), std::abs(most_s - period_s));
-  }
-};
-
-Extremes extremes_of(std::span<const double> time_s) {
-  constexpr std::size_t kLanes = 4;  // for instruction-level parallelism
-  Extremes found;
-  std::array<double, kLanes> least, most;
-  least.fill(found.least_s);
-  most.fill(found.most_s);
-  for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
-    const double step = step_after(time_s, i);
-    least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
-    most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
-  }
-  found.least_s = *std::ranges::min_element(least);
-  found.most_s = *std::ranges::max_element(most);
-  return found;
 }
 
 // Every `stride`-th step.
@@ -161,7 +133,8 @@ SampleClock sample_clock(std::span<const double> time_s) {
   const std::size_t count = time_s.size() - 1;
   // Some 100,000 steps suffice for the median.
   std::vector<double> some = some_steps(time_s, count / 100'000 + 1);
-  const Extremes steps = extremes_of(time_s);
+  double longest = 0.0;
+  for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, step_after(time_s, i));
   double period = median(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
@@ -171,25 +144,18 @@ SampleClock sample_clock(std::span<const double> time_s) {
     for (double& step : away) step = std::abs(step - period_s);
     return 1.4826 * median(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
   };
-  const EvenClock even = steps.gapless(period) ? EvenClock{} : even_clock(time_s);
+  const EvenClock even = longest <= kGap * period ? EvenClock{} : even_clock(time_s);
   std::ranges::nth_element(some, some.begin() + std::ssize(some) / 10);
   if (even.period_s > 0.0 && even.explains(some[some.size() / 10])) {
     period = even.period_s;
     clock.scatter = std::max(scatter(period), even.scatter());
   } else {
     // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
-    for (int round = 0; round < 2; ++round)
-      period = steps.gapless(period) ? (time_s.back() - time_s.front()) / static_cast<double>(count)
-                                     : mean_period(time_s, period, false);
+    for (int round = 0; round < 2; ++round) period = mean_period(time_s, period, false);
     clock.scatter = scatter(period);
     for (int round = 0; clock.scatters() && round < 3; ++round) period = mean_period(time_s, period, true);
   }
   clock.period_s = period;
-  if (!clock.scatters() && steps.gapless(period)) {
-    clock.worst_jitter_s = steps.jitter_s(period);
-    return clock;
-  }
-
   const std::vector<Hole> gaps = holes(time_s, clock);
   clock.gaps = gaps.size();
   if (!gaps.empty()) clock.first_gap = gaps.front().after;

@@ -24,7 +24,4 @@ struct LongPoint {
 [[nodiscard]] std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, double confidence,
                                            int per_decade);
 
-// Thêo1 variance by its definition, (rad/s)²; angles one sample apart, even span m.
-[[nodiscard]] double theo1_variance(std::span<const double> angle, std::size_t m);
-
 }  // namespace ifog

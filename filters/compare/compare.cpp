@@ -7,7 +7,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "filters/allan/deviation.h"
 #include "filters/compare/figures.h"
 #include "filters/distributions/median.h"
 #include "filters/rest/rest.h"
@@ -137,15 +136,7 @@ void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span
     row.bias_radps = against.bias;
     row.lag_s = against.lag_s;
   }
-  if (parts.empty()) return;
-  const AngleSum sum(output, parts);
-  for (std::size_t i = 0; i < kComparedTaus.size(); ++i) {
-    const double samples = std::round(kComparedTaus[i] / clock.period_s);
-    if (samples < 1.0 || std::abs(samples * clock.period_s / kComparedTaus[i] - 1.0) > 0.1) continue;
-    const std::size_t m[] = {static_cast<std::size_t>(samples)};
-    const DeviationPoint point = deviation(sum, m).front();
-    if (point.terms > 0) row.adev_radps[i] = std::sqrt(point.variance);
-  }
+  row.adev_radps = reported_deviations(output, parts, clock.period_s);
 }
 
 void add_innovation_figures(ComparisonRow& row, std::span<const double> innovation, Samples nis) {

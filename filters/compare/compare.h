@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/allan/stretches.h"
+#include "filters/allan/deviation.h"
 #include "filters/estimator/estimator.h"
 #include "filters/series/samples.h"
 #include "filters/settings/filter_settings.h"
@@ -26,8 +26,8 @@ struct ComparisonInput {
   std::vector<Stretch> at_rest;                    // for std_radps and adev_radps; empty: all samples
 };
 
-// Averaging times of the compared Allan deviations, s.
-inline constexpr std::array<double, 4> kComparedTaus{0.1, 1.0, 10.0, 100.0};
+// Averaging times of the compared Allan deviations.
+inline constexpr const auto& kComparedTaus = kReportedTaus;
 
 // Samples until the output reaches 90 % of a step added to the record; median over the places of the step.
 struct StepResponse {
@@ -40,8 +40,7 @@ struct ComparisonRow {
   int axis = 0;
   std::optional<double> rmse_radps, bias_radps, lag_s;  // relative to the reference, if any
   double std_radps = 0.0;                               // at rest, like the deviations
-  std::array<std::optional<double>, kComparedTaus.size()>
-      adev_radps;                // nullopt: the record is too short or too coarse
+  ReportedDeviations adev_radps;
   double heading_end_rad = 0.0;  // ∫(denoised − compensated)dt over the record
   double heading_max_rad = 0.0;  // its largest magnitude
   // From the innovations of the filter at rest outside manoeuvres, where the rule learns. nullopt if fewer

@@ -188,15 +188,12 @@ LikelihoodRecord::Group grouped(std::span<const std::span<const double>> axes) {
 }  // namespace
 
 LikelihoodRecord::LikelihoodRecord(std::span<const std::span<const double>> axes) {
-  std::vector<std::span<const double>> left(axes.begin(), axes.end());
-  while (!left.empty()) {
-    std::vector<std::span<const double>> together, others;
-    for (const auto& axis : left)
-      (same_missing(left[0], axis) && together.size() < std::size_t{kLanes} ? together : others)
-          .push_back(axis);
-    groups_.push_back(grouped(together));
-    left = std::move(others);
-  }
+  const bool alike = axes.size() <= std::size_t{kLanes} &&
+                     std::ranges::all_of(axes, [&](const auto& axis) { return same_missing(axes[0], axis); });
+  if (alike)
+    groups_.push_back(grouped(axes));
+  else
+    for (const auto& axis : axes) groups_.push_back(grouped({&axis, 1}));
 }
 
 double LikelihoodTerms::log_likelihood() const {
@@ -214,12 +211,6 @@ LikelihoodTerms likelihood(const StateModel& model, double process_noise, double
     sum.sum_normalised += one.sum_normalised;
   }
   return sum;
-}
-
-LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
-                           std::span<const double> rate, double dt_s) {
-  const std::span<const double> axes[] = {rate};
-  return likelihood(model, process_noise, measurement_noise, LikelihoodRecord(axes), dt_s);
 }
 
 }  // namespace ifog

@@ -55,8 +55,4 @@ struct LikelihoodTerms {
                                          double measurement_noise, const LikelihoodRecord& record,
                                          double dt_s);
 
-// The same for one axis.
-[[nodiscard]] LikelihoodTerms likelihood(const StateModel& model, double process_noise,
-                                         double measurement_noise, std::span<const double> rate, double dt_s);
-
 }  // namespace ifog

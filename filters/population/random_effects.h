@@ -5,9 +5,13 @@
 #include <cstddef>
 #include <span>
 
-#include "filters/population/estimate.h"
-
 namespace ifog {
+
+// Estimate of a parameter from one gyro's captures.
+struct Estimate {
+  double value = 0.0;
+  double std_error = 0.0;  // > 0
+};
 
 struct RandomEffects {
   std::size_t count = 0;

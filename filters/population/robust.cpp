@@ -2,30 +2,20 @@
 #include "filters/population/robust.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <iterator>
 
 namespace ifog {
-namespace {
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-}  // namespace
 
 RobustSpread robust_spread(std::span<const double> values) {
+  using boost::math::statistics::median;
   std::vector<double> finite;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
-               [](double value) { return std::isfinite(value); });
-  RobustSpread spread;
-  spread.median = median_of(finite);
-  for (double& value : finite) value = std::abs(value - spread.median);
-  spread.sigma = 1.4826 * median_of(std::move(finite));
-  return spread;
+  std::ranges::copy_if(values, std::back_inserter(finite), [](double value) { return std::isfinite(value); });
+  if (finite.empty()) return {};
+  const double middle = median(finite);
+  for (double& value : finite) value = std::abs(value - middle);
+  return {middle, 1.4826 * median(finite)};
 }
 
 std::vector<double> robust_z(std::span<const double> values, std::span<const double> errors) {

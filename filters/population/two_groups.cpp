@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/population/two_groups.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
-
-#include "filters/population/random_effects.h"
 
 namespace ifog {
 namespace {
 
+using Eigen::ArrayXd;
+
 constexpr int kMostRounds = 2000;
-constexpr int kRoundsWithout = 200;  // starting at the fit of all, which one member hardly changes
-constexpr double kSettled = 1e-8;    // change of the log-likelihood
-constexpr double kSettledWithout = 1e-5;
+constexpr double kSettled = 1e-6;  // change of the log-likelihood
 // Prior: one member with and one without the effect, so neither group is excluded.
 constexpr double kBeforehand = 1.0;
 constexpr double kFewestHaving = 3.0;  // fewest members with the effect for an expected spread
-constexpr std::size_t kSpreads = 60;   // number tried
+constexpr Eigen::Index kSpreads = 60;  // number tried
 
 double square(double x) { return x * x; }
 
@@ -37,103 +36,82 @@ double log_sum(const TypePrior& prior, double ratio) {
   return most + std::log(std::exp(with - most) + std::exp(without - most));
 }
 
-// Log-likelihood without member `left_out`, relative to that without the effect.
-double log_likelihood(const TypePrior& prior, std::span<const Estimate> estimates, std::size_t left_out) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i)
-    if (i != left_out) sum += log_sum(prior, log_ratio(prior, estimates[i]));
-  return sum;
+// The estimates by column.
+struct Members {
+  std::span<const Estimate> estimates;
+  ArrayXd value, own;  // own: squared standard errors
+
+  explicit Members(std::span<const Estimate> of) : estimates(of), value(std::ssize(of)), own(std::ssize(of)) {
+    std::ranges::transform(of, value.begin(), &Estimate::value);
+    std::ranges::transform(of, own.begin(), [](const Estimate& each) { return square(each.std_error); });
+  }
+
+  // Relative to that without the effect.
+  [[nodiscard]] double log_likelihood(const TypePrior& prior) const {
+    double sum = 0.0;
+    for (const Estimate& each : estimates) sum += log_sum(prior, log_ratio(prior, each));
+    return sum;
+  }
+  // Probability of the effect, by member.
+  [[nodiscard]] ArrayXd weights(const TypePrior& prior) const {
+    ArrayXd weight(value.size());
+    std::ranges::transform(estimates, weight.begin(),
+                           [&](const auto& each) { return probability(prior, each); });
+    return weight;
+  }
+};
+
+// Standard error of the type's mean.
+double error_of_mean(const Members& members, const ArrayXd& weight, double spread) {
+  const double information = (weight / (members.own + square(spread))).sum();
+  return information > 0.0 ? std::sqrt(1.0 / information) : 0.0;
 }
 
-TypePrior improved(const TypePrior& prior, std::span<const Estimate> estimates, std::size_t left_out) {
-  double members = 0.0, having = 0.0, sum = 0.0;
-  std::vector<double> weight(estimates.size(), 0.0);
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    if (i == left_out) continue;
-    members += 1.0;
-    weight[i] = probability(prior, estimates[i]);
-    having += weight[i];
-    const double own = square(estimates[i].std_error), type = square(prior.spread);
-    sum += weight[i] * (type * estimates[i].value + own * prior.mean) / (own + type);
-  }
+TypePrior improved(const TypePrior& prior, const Members& members) {
+  const ArrayXd weight = members.weights(prior);
+  const double having = weight.sum(), type = square(prior.spread);
   TypePrior next = prior;
-  next.share = (having + kBeforehand) / (members + 2.0 * kBeforehand);
+  next.share = (having + kBeforehand) / (static_cast<double>(weight.size()) + 2.0 * kBeforehand);
   if (having < 1e-6) return next;
-  next.mean = sum / having;
-  double variance = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    const double own = square(estimates[i].std_error), type = square(prior.spread);
-    const double expected = (type * estimates[i].value + own * prior.mean) / (own + type);
-    variance += weight[i] * (square(expected - next.mean) + own * type / (own + type));
-  }
-  next.spread = std::sqrt(variance / having);
+  const ArrayXd all = members.own + type, expected = (type * members.value + members.own * prior.mean) / all;
+  next.mean = (weight * expected).sum() / having;
+  next.spread =
+      std::sqrt((weight * ((expected - next.mean).square() + members.own * type / all)).sum() / having);
   return next;
 }
 
-TypePrior climbed(TypePrior prior, std::span<const Estimate> estimates, std::size_t left_out, int rounds,
-                  double settled) {
-  double before = log_likelihood(prior, estimates, left_out);
-  for (int round = 0; round < rounds; ++round) {
-    prior = improved(prior, estimates, left_out);
-    const double now = log_likelihood(prior, estimates, left_out);
-    if (std::abs(now - before) < settled) break;
-    before = now;
+TypePrior climbed(TypePrior prior, const Members& members) {
+  double now = members.log_likelihood(prior), before = now - 1.0;
+  for (int round = 0; round < kMostRounds && std::abs(now - before) >= kSettled; ++round) {
+    prior = improved(prior, members);
+    before = std::exchange(now, members.log_likelihood(prior));
   }
-  prior.likelihood_ratio = 2.0 * log_likelihood(prior, estimates, left_out);
-  double information = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i)
-    if (i != left_out)
-      information +=
-          probability(prior, estimates[i]) / (square(estimates[i].std_error) + square(prior.spread));
-  prior.mean_std_error = information > 0.0 ? std::sqrt(1.0 / information) : 0.0;
+  prior.likelihood_ratio = 2.0 * now;
+  prior.mean_std_error = error_of_mean(members, members.weights(prior), prior.spread);
   return prior;
 }
 
 // Restricted log-likelihood of a spread; members weighted by their probability of the effect.
-double restricted(double spread, std::span<const Estimate> estimates, const std::vector<double>& weight) {
-  double information = 0.0, weighted = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    const double variance = square(estimates[i].std_error) + square(spread);
-    information += weight[i] / variance;
-    weighted += weight[i] * estimates[i].value / variance;
-  }
-  const double mean = weighted / information;
-  double sum = -0.5 * std::log(information);
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    const double variance = square(estimates[i].std_error) + square(spread);
-    sum -= 0.5 * weight[i] * (std::log(variance) + square(estimates[i].value - mean) / variance);
-  }
-  return sum;
+double restricted(double spread, const Members& members, const ArrayXd& weight) {
+  const ArrayXd variance = members.own + square(spread);
+  const double information = (weight / variance).sum();
+  const double mean = (weight * members.value / variance).sum() / information;
+  return -0.5 * (std::log(information) +
+                 (weight * (variance.log() + (members.value - mean).square() / variance)).sum());
 }
 
-TypePrior with_expected_spread(TypePrior prior, std::span<const Estimate> estimates, std::size_t left_out) {
+TypePrior with_expected_spread(TypePrior prior, const Members& members) {
   prior.likeliest_spread = prior.spread;
-  std::vector<double> weight(estimates.size(), 0.0);
-  double having = 0.0, errors = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    if (i == left_out) continue;
-    weight[i] = probability(prior, estimates[i]);
-    having += weight[i];
-    errors += weight[i] * square(estimates[i].std_error);
-  }
+  const ArrayXd weight = members.weights(prior);
+  const double having = weight.sum();
   if (having < kFewestHaving) return prior;
   // Beyond, single errors are negligible and the likelihood falls as a power of the spread.
-  const double most = 4.0 * (prior.spread + std::sqrt(errors / having));
-  std::array<double, kSpreads> likelihood{};
-  for (std::size_t k = 0; k < kSpreads; ++k)
-    likelihood[k] = restricted(most * (static_cast<double>(k) + 0.5) / kSpreads, estimates, weight);
-  const double top = *std::ranges::max_element(likelihood);
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t k = 0; k < kSpreads; ++k) {
-    const double share = std::exp(likelihood[k] - top);
-    sum += share;
-    squares += share * square(most * (static_cast<double>(k) + 0.5) / kSpreads);
-  }
-  prior.spread = std::sqrt(squares / sum);
-  double information = 0.0;
-  for (std::size_t i = 0; i < estimates.size(); ++i)
-    information += weight[i] / (square(estimates[i].std_error) + square(prior.spread));
-  prior.mean_std_error = std::sqrt(1.0 / information);
+  const double most = 4.0 * (prior.spread + std::sqrt((weight * members.own).sum() / having));
+  const ArrayXd spread = most * (ArrayXd::LinSpaced(kSpreads, 0.0, kSpreads - 1.0) + 0.5) / kSpreads;
+  const ArrayXd likelihood = spread.unaryExpr([&](double each) { return restricted(each, members, weight); });
+  const ArrayXd share = (likelihood - likelihood.maxCoeff()).exp();
+  prior.spread = std::sqrt((share * spread.square()).sum() / share.sum());
+  prior.mean_std_error = error_of_mean(members, weight, prior.spread);
   return prior;
 }
 
@@ -143,41 +121,31 @@ double normal_above(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
 
 TypePrior likeliest_two_groups(std::span<const Estimate> estimates) {
   const RandomEffects all = random_effects(estimates);
-  double largest = 0.0;
-  for (const Estimate& each : estimates)
-    if (std::abs(each.value) > std::abs(largest)) largest = each.value;
-  double error = 0.0;
-  for (const Estimate& each : estimates) error += each.std_error / static_cast<double>(estimates.size());
+  const double largest =
+      std::ranges::max(estimates, {}, [](const Estimate& each) { return std::abs(each.value); }).value;
+  const Members members(estimates);
+  const double error = members.own.sqrt().mean();
   // The likelihood has several maxima: all alike, a few outliers, either sign.
-  const auto start_at = [](double share, double mean, double spread) {
-    TypePrior start;
-    start.share = share;
-    start.mean = mean;
-    start.spread = spread;
-    return start;
-  };
-  const TypePrior starts[] = {start_at(0.9, all.mean, std::max(all.spread, 0.3 * error)),
-                              start_at(0.5, 0.5 * largest, 0.25 * std::abs(largest) + 0.3 * error),
-                              start_at(0.5, 0.0, std::max(all.spread, error))};
-  TypePrior best;
-  best.likelihood_ratio = -1e300;
-  for (const TypePrior& start : starts) {
-    const TypePrior found = climbed(start, estimates, estimates.size(), kMostRounds, kSettled);
-    if (found.likelihood_ratio > best.likelihood_ratio) best = found;
-  }
-  return best;
+  const TypePrior found[] = {
+      climbed({.share = 0.9, .mean = all.mean, .spread = std::max(all.spread, 0.3 * error)}, members),
+      climbed({.share = 0.5, .mean = 0.5 * largest, .spread = 0.25 * std::abs(largest) + 0.3 * error},
+              members),
+      climbed({.share = 0.5, .spread = std::max(all.spread, error)}, members)};
+  return std::ranges::max(found, {}, &TypePrior::likelihood_ratio);
 }
 
 TypePrior fit_two_groups(std::span<const Estimate> estimates) {
-  return with_expected_spread(likeliest_two_groups(estimates), estimates, estimates.size());
+  return with_expected_spread(likeliest_two_groups(estimates), Members(estimates));
 }
 
 TypePrior without_member(std::span<const Estimate> estimates, std::size_t member, const TypePrior& all) {
   if (estimates.size() < 2) throw std::invalid_argument("a population without other members");
-  TypePrior start = all;
+  std::vector<Estimate> others(estimates.begin(), estimates.end());
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
+  const Members members(others);
+  TypePrior start = all;  // which one member hardly changes
   start.spread = all.likeliest_spread;
-  return with_expected_spread(climbed(start, estimates, member, kRoundsWithout, kSettledWithout), estimates,
-                              member);
+  return with_expected_spread(climbed(start, members), members);
 }
 
 double probability(const TypePrior& prior, const Estimate& estimate) {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-#include "filters/population/estimate.h"
+#include "filters/population/random_effects.h"
 
 namespace ifog {
 

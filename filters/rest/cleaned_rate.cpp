@@ -13,17 +13,23 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kStuck = 8;  // equal samples in a row
+// Equal samples in a row: where repeats are rare, and where up to half of the samples repeat.
+constexpr std::size_t kStuck = 8, kHeld = 64;
+constexpr std::size_t kMostHeld = 4096;  // of such runs in a record
 
 // Empty if repeated values are normal in this record.
 std::vector<Stretch> stuck_runs(std::span<const double> rate, std::span<const Stretch> parts) {
+  const std::size_t held = std::max(kHeld, rate.size() / kMostHeld);
   std::vector<Stretch> stuck;
   Repeats repeats;
+  std::size_t others = 0, changes = 0;  // samples of shorter runs than `held`
   for_each_run(rate, parts, [&](const Run& run) {
     repeats.add(run);
     if (run.length >= kStuck) stuck.push_back({run.begin, run.begin + run.length});
+    if (run.length < held) others += run.length, ++changes;
   });
-  if (!repeats.are_rare() || repeats.runs <= 16) stuck.clear();
+  if (repeats.runs <= 16 || 2 * changes < others) return {};
+  if (!repeats.are_rare()) std::erase_if(stuck, [&](const Stretch& run) { return run.size() < held; });
   return stuck;
 }
 

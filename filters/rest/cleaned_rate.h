@@ -22,8 +22,9 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 // sensors that stand in turn. rate: rad/s, NaN where missing.
 void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// Also sets runs of eight or more equal samples to NaN, if nine of ten runs are single samples; to be called
-// before the search for rest.
+// Also sets runs of equal samples to NaN, where the logger repeats its last value or the sensor has not started: of eight
+// or more if nine of ten runs are single samples, else of 64 and 1/4096 of the record if half of the other samples
+// differ from the one before. To be called before the search for rest.
 void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // Rate in which single outliers of `error` are replaced by the median of their neighbours. nullopt if there

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/rest/followed_channel.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -45,21 +45,15 @@ Pairs pairs_of(std::span<const double> rate, std::span<const Stretch> parts, std
   return pairs;
 }
 
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 struct Line {
   double slope = 0.0, share = 0.0;
 };
 Line line_of(const Pairs& pairs) {
   if (pairs.rate.size() < kFewestMeans) return {};
-  const double rate = mean_of(pairs.rate), channel = mean_of(pairs.channel);
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t i = 0; i < pairs.rate.size(); ++i) {
-    const double x = pairs.channel[i] - channel, y = pairs.rate[i] - rate;
-    xx += x * x, xy += x * y, yy += y * y;
-  }
+  const Eigen::Map<const Eigen::ArrayXd> rate(pairs.rate.data(), std::ssize(pairs.rate)),
+      channel(pairs.channel.data(), std::ssize(pairs.channel));
+  const Eigen::ArrayXd x = channel - channel.mean(), y = rate - rate.mean();
+  const double xx = x.square().sum(), xy = (x * y).sum(), yy = y.square().sum();
   return xx > 0.0 && yy > 0.0 ? Line{xy / xx, xy * xy / (xx * yy)} : Line{};
 }
 

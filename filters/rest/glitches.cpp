@@ -2,7 +2,6 @@
 #include "filters/rest/glitches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -82,8 +81,8 @@ class Yardstick {
   // Lower limit of at().
   [[nodiscard]] double least() const { return std::max(all_, least_); }
   // Deviation at sample i: the whole record's, or the local one if that is higher, so that growing noise is
-  // no fault; 0 if the value does not change. i must not decrease from call to call.
-  [[nodiscard]] double at(std::size_t i) {
+  // no fault; 0 if the value does not change.
+  [[nodiscard]] double at(std::size_t i) const {
     const std::size_t block = i / kNear;
     double near = 0.0;
     for (std::size_t b = block - std::min<std::size_t>(block, 1); b < block + 2; ++b)
@@ -92,15 +91,8 @@ class Yardstick {
   }
 
  private:
-  struct Near {
-    std::size_t block = std::numeric_limits<std::size_t>::max();
-    double deviation = 0.0;
-  };
-
   // Deviation of one block of samples. Computed only where a leap is possible.
-  double near_at(std::size_t block) {
-    Near& known = near_[block % near_.size()];
-    if (known.block == block) return known.deviation;
+  [[nodiscard]] double near_at(std::size_t block) const {
     // The parts within the block, with one more sample on either side.
     const std::size_t begin = block * kNear, end = std::min(begin + kNear, rate_.size());
     std::vector<Stretch> here;
@@ -109,8 +101,7 @@ class Yardstick {
         here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
     for_each_middle(rate_, here, without_, [&](std::size_t, double each) { away.push_back(each); });
-    known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
-    return known.deviation;
+    return away.size() >= kLeast ? kOfMedian * median(away) : 0.0;
   }
 
   void add(const Run& run) {
@@ -126,8 +117,7 @@ class Yardstick {
   std::span<const double> rate_;
   std::span<const Stretch> parts_;
   Repeats repeats_;
-  std::array<Near, 4> near_;  // cache
-  double without_ = -1.0;     // magnitude of placeholders, if any
+  double without_ = -1.0;  // magnitude of placeholders, if any
   double all_ = 0.0, least_ = 0.0, largest_ = 0.0, second_ = 0.0;
   double smallest_step_ = std::numeric_limits<double>::infinity();
   std::size_t times_ = 0;  // number of runs of largest_

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "filters/allan/runs.h"
 #include "filters/distributions/median.h"
-#include "filters/rest/held.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -90,15 +88,8 @@ class Pyramid {
     accepted_ = rate;
     if (first || step <= kRoundedAway * std::abs(rate)) return rate;
     steps_ = std::min(steps_ + 1.0, kUsual);
-    usual_step_ +=
-        over(std::min(step, kSpike * std::max(usual_step_, over(step, steps_))) - usual_step_, steps_);
+    usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
     return rate;
-  }
-
-  // value / count. For count = kUsual, a power of two, the product equals the quotient to the bit.
-  static double over(double value, double count) {
-    constexpr double kPart = 1.0 / kUsual;
-    return count == kUsual ? value * kPart : value / count;
   }
 
   struct Level {
@@ -128,7 +119,7 @@ class Pyramid {
     level.met = std::min(level.met + 1.0, kUsual);
     const double magnitude = level.met < kFewest ? std::abs(coefficient)
                                                  : std::min(std::abs(coefficient), kMostTimes * level.usual);
-    level.usual += over(magnitude - level.usual, level.met);
+    level.usual += (magnitude - level.usual) / level.met;
     octaves_[octave].magnitudes[cell] += magnitude;
   }
 
@@ -314,33 +305,19 @@ void leave_out(const Found& found, std::vector<NoiseLevel>& all) {
   }
 }
 
-// The longest held stretch, if it is at least one cell long.
-std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
-                                      const std::function<double(std::size_t)>& time_s) {
-  std::erase_if(held, [&](const Stretch& each) { return each.size() * kTimes < samples; });
-  std::ranges::sort(held, std::ranges::greater{}, &Stretch::size);
-  held.resize(std::min(held.size(), kMostChanges));
-  std::vector<NoiseChange> out;
-  out.reserve(held.size());
-  for (const Stretch& each : held)
-    out.push_back({time_s(each.begin), time_s(each.end - 1), 0.0, {0.0, 0.5 / period_s}});
-  return out;
-}
-
 }  // namespace
 
 std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps, std::span<const Stretch> parts,
                                        double period_s, const std::function<double(std::size_t)>& time_s) {
-  const HeldApart apart = apart_from_held(rate_radps, {parts.begin(), parts.end()});
   Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
-  for (const Stretch& part : apart.moving) {
+  for (const Stretch& part : parts) {
     pyramid.begin();
     for (std::size_t i = part.begin; i < part.end; ++i) pyramid.take(rate_radps[i], i);
   }
   std::vector<NoiseLevel> all;
   for (const Octave& octave : pyramid.octaves()) all.push_back(noise_level_of(octave));
   while (!all.empty() && all.back().root.empty()) all.pop_back();
-  std::vector<NoiseChange> changes = stands_still(apart.held, rate_radps.size(), period_s, time_s);
+  std::vector<NoiseChange> changes;
   while (changes.size() < kMostChanges) {
     const Found found = surest(all);
     if (found.departure < kSurely) break;
@@ -360,10 +337,6 @@ std::string in_words(std::span<const NoiseChange> changes) {
     const NoiseChange& change = changes[i];
     const std::string from = told_time(change.from_s), to = told_time(change.to_s);
     words += i > 0 ? "," : "";
-    if (!(change.times > 0.0)) {
-      words += " it stands still in " + from + " … " + to + " s";
-      continue;
-    }
     words += formatted(" %.2g times the noise in ", change.times) + from + " … " + to + " s";
     words += change.range_hz.low > 0.0
                  ? formatted(" (%.2g to %.3g Hz)", change.range_hz.low, change.range_hz.high)

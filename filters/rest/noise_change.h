@@ -22,7 +22,7 @@ namespace ifog {
 struct NoiseChange {
   double from_s = 0.0, to_s = 0.0;  // the stretch
   // Ratio of the noise deviation there to that elsewhere, in the octave where it changes most, limited to
-  // 1e-6 … 1e6; 0 where the value does not change (filters/rest/held.h).
+  // 1e-6 … 1e6.
   double times = 1.0;
   FrequencyRange range_hz;  // the octaves that changed, joined
 };

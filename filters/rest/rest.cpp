@@ -52,28 +52,19 @@ struct Window {
 };
 
 // Uses four quarters, so that one outlier has no effect: the mean is that of the middle two, the scatter is
-// the second smallest. Interleaved for instruction-level parallelism.
+// the second smallest.
 Window window_of(std::span<const double> rate) {
-  std::array<double, kQuarters> n{}, level{}, scatter{};
-  std::array<std::span<const double>, kQuarters> quarter;
+  std::array<double, kQuarters> level{}, scatter{};
   for (std::size_t q = 0; q < kQuarters; ++q) {
     const std::size_t begin = q * rate.size() / kQuarters, end = (q + 1) * rate.size() / kQuarters;
-    quarter[q] = rate.subspan(begin, end - begin);
-  }
-  const auto take = [&](std::size_t q, double value) {
-    if (!std::isfinite(value)) return;
-    n[q] += 1.0;
-    const double away = value - level[q];
-    level[q] += away / n[q];
-    scatter[q] += away * (value - level[q]);
-  };
-  const std::size_t shortest = rate.size() / kQuarters;
-  for (std::size_t i = 0; i < shortest; ++i)
-    for (std::size_t q = 0; q < kQuarters; ++q) take(q, quarter[q][i]);
-  for (std::size_t q = 0; q < kQuarters; ++q) {
-    for (const double value : quarter[q].subspan(shortest)) take(q, value);
-    if (n[q] < 2.0) return {std::nan(""), std::nan("")};
-    scatter[q] = std::sqrt(scatter[q] / (n[q] - 1.0));
+    double n = 0.0, sum = 0.0, squares = 0.0;
+    for (const double value : rate.subspan(begin, end - begin))
+      if (std::isfinite(value)) n += 1.0, sum += value;
+    if (n < 2.0) return {std::nan(""), std::nan("")};
+    level[q] = sum / n;
+    for (const double value : rate.subspan(begin, end - begin))
+      if (std::isfinite(value)) squares += (value - level[q]) * (value - level[q]);
+    scatter[q] = std::sqrt(squares / (n - 1.0));
   }
   std::ranges::sort(level);
   std::ranges::sort(scatter);

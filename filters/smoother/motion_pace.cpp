@@ -22,11 +22,6 @@ constexpr double kAsGood = 24.0;
 constexpr double kUsed = 0.8;
 // Growth of the memory per sample after faster motion.
 constexpr float kGrows = 0.1F;
-// Long runs are processed in pieces with this overlap, and with a corresponding longest memory.
-constexpr std::size_t kPiece = std::size_t{1} << 16U;
-constexpr std::size_t kOverlap = std::size_t{1} << 14U;
-constexpr double kMostMemory = 2000.0;
-
 // Estimated squared error of each sample / R, without a common constant. Level 0: the measurement itself.
 std::vector<double> risks(const RateCourse& part, double noise, Level level) {
   const std::size_t length = part.rate.size();
@@ -84,15 +79,9 @@ RateCourse part_of(const RateCourse& course, std::size_t begin, std::size_t end)
 // Determines the memories in one run of motion.
 void find_in(const RateCourse& run, double noise, double longest, std::span<float> memories) {
   const std::size_t length = memories.size();
-  for (std::size_t begin = 0; begin < length; begin += kPiece) {
-    const std::size_t end = std::min(length, begin + kPiece);
-    const std::size_t from = begin - std::min(begin, kOverlap), to = std::min(length, end + kOverlap);
-    const std::vector<Level> levels = levels_of(part_of(run, from, to), noise, longest);
-    for (std::size_t i = begin; i < end; ++i) {
-      const Level level = levels[i - from];
-      memories[i] = level == 0 ? pace::kBroken : static_cast<float>(kUsed * memory_of(level));
-    }
-  }
+  const std::vector<Level> levels = levels_of(run, noise, longest);
+  for (std::size_t i = 0; i < length; ++i)
+    memories[i] = levels[i] == 0 ? pace::kBroken : static_cast<float>(kUsed * memory_of(levels[i]));
   for (std::size_t i = 1; i < length; ++i) memories[i] = std::min(memories[i], memories[i - 1] + kGrows);
   for (std::size_t i = length - 1; i-- > 0;) memories[i] = std::min(memories[i], memories[i + 1] + kGrows);
 }
@@ -104,8 +93,7 @@ void find_paces(const RateCourse& course, double noise, double longest, std::spa
     std::size_t end = begin;
     while (end < memories.size() && memories[end] > pace::kRest) ++end;
     if (end > begin)
-      find_in(part_of(course, begin, end), noise, std::min(longest, kMostMemory),
-              memories.subspan(begin, end - begin));
+      find_in(part_of(course, begin, end), noise, longest, memories.subspan(begin, end - begin));
     begin = end + 1;
   }
 }

@@ -61,7 +61,9 @@ class Course {
     out.driving.rightCols<2>().setZero();
     return out;
   }
-  void correct(std::size_t i, State& state) const {
+  // Filters from i - 1 to i.
+  void filter(std::size_t i, State& state) const {
+    step(i).predict(state);
     if (!std::isfinite(of_.rate[i])) return;
     const Vector gain = state.p.col(0) / (state.p(0, 0) + 1.0);
     state.x += gain * (of_.rate[i] / std::sqrt(noise_) - state.x[0]);
@@ -124,36 +126,6 @@ void smooth_back(const Course& course, std::size_t i, State& filtered, const Sta
       (kept * filtered.p * kept.transpose() + gain * (step.driving + next.p) * gain.transpose()).eval();
 }
 
-// Between rest samples there is a single state.
-bool rests(const Course& course, std::size_t i) { return !course.moving(i) && !course.moving(i - 1); }
-
-// Filters from i - 1 to i.
-void filter(const RateCourse& of, const Course& course, double noise, std::size_t i, State& now) {
-  if (!rests(course, i)) {
-    course.step(i).predict(now);
-    course.correct(i, now);
-    return;
-  }
-  now.p(0, 0) += of.walk[i] / noise;
-  if (!std::isfinite(of.rate[i])) return;
-  const double gain = now.p(0, 0) / (now.p(0, 0) + 1.0);
-  now.x[0] += gain * (of.rate[i] / std::sqrt(noise) - now.x[0]);
-  now.p(0, 0) *= 1.0 - gain;
-}
-
-// Smooths one sample.
-void smooth_one(const RateCourse& of, const Course& course, double noise, std::size_t i, State& filtered,
-                const State& next) {
-  if (!rests(course, i + 1)) {
-    smooth_back(course, i, filtered, next);
-    return;
-  }
-  const double predicted = filtered.p(0, 0) + of.walk[i + 1] / noise;
-  const double share = filtered.p(0, 0) / predicted;
-  filtered.x[0] += share * (next.x[0] - filtered.x[0]);
-  filtered.p(0, 0) += share * share * (next.p(0, 0) - predicted);
-}
-
 }  // namespace
 
 double pace::jerk(double memory) noexcept {
@@ -176,7 +148,7 @@ Smoothed smooth_course(const RateCourse& of, double noise) {
   if (course.moving(first)) now.p(1, 1) = now.p(2, 2) = course.anything(first);
   std::vector<State> begun{now};  // filtered, at the start of each piece
   for (std::size_t i = first + 1; i < length; ++i) {
-    filter(of, course, noise, i, now);
+    course.filter(i, now);
     if ((i - first) % kHeldAtOnce == 0) begun.push_back(now);
   }
   std::vector<State> piece;
@@ -186,11 +158,11 @@ Smoothed smooth_course(const RateCourse& of, double noise) {
     piece.assign(1, begun.back());
     for (std::size_t i = begin + 1; i < end; ++i) {
       piece.push_back(piece.back());
-      filter(of, course, noise, i, piece.back());
+      course.filter(i, piece.back());
     }
     for (std::size_t i = end; i-- > begin;) {
       State& filtered = piece[i - begin];
-      if (i + 1 < length) smooth_one(of, course, noise, i, filtered, now);
+      if (i + 1 < length) smooth_back(course, i, filtered, now);
       now = filtered;
       rate[i] = now.x[0] * sigma;
       variance[i] = now.p(0, 0) * noise;

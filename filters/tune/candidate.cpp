@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/state_models/state_model.h"
@@ -14,15 +16,30 @@ namespace {
 
 constexpr double kLeastLog = -34.0;  // e^-34: a level that is constant within any record
 
-// Largest factor of `shape` that stays below the coarse spectrum.
+// Exceeded by nine tenths of the bins.
+double low_decile(std::vector<double> values) {
+  const auto at = values.begin() + std::ssize(values) / 10;
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+// Factor of `shape` that stays below most of the spectrum.
 double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
-  double least = 1e300;
-  for (std::size_t b = 0; b < spectrum.bins(); ++b)
-    if (shape[b] > 0.0) least = std::min(least, spectrum.coarse[b] / shape[b]);
-  return least;
+  std::vector<double> ratio(spectrum.density);
+  for (std::size_t b = 0; b < ratio.size(); ++b) ratio[b] /= shape[b];
+  return low_decile(std::move(ratio));
 }
 
 }  // namespace
+
+// Calls use(term, its part of theta).
+template <typename T, typename Use>
+void ModelCandidate::for_each_term(std::span<T> theta, Use use) const {
+  for (std::size_t at = kLevel; const auto& term : terms_) {
+    use(*term, theta.subspan(at, static_cast<std::size_t>(term->size())));
+    at += static_cast<std::size_t>(term->size());
+  }
+}
 
 ModelCandidate::ModelCandidate(std::string state, double period_s)
     : state_(std::move(state)), period_s_(period_s) {
@@ -53,31 +70,29 @@ void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const
   high[0] = 4.0;
   low[1] = -16.0;
   high[1] = 8.0;
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    term->bounds(low.subspan(at), high.subspan(at));
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(low, [&](const NoiseTerm& term, std::span<double> part) {
+    term.bounds(part, high.subspan(static_cast<std::size_t>(part.data() - low.data())));
+  });
 }
 
 std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
-  // Each part gets a random share of the largest factor.
-  const auto share = [&] { return std::log(std::uniform_real_distribution<double>(0.02, 1.0)(random)); };
+  // Shapes are drawn within their bounds; each part gets a random share of the largest factor.
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto share = [&] { return std::log(between(0.02, 1.0)); };
   std::vector<double> theta(static_cast<std::size_t>(size_)), shape(spectrum.bins());
   std::vector<double> low(theta.size()), high(theta.size());
   bounds(low, high);
+  for (std::size_t i = kLevel; i < theta.size(); ++i) theta[i] = between(low[i], high[i]);
   theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
-  theta[1] = std::log(*std::ranges::min_element(spectrum.coarse)) + share();
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    const auto part = std::span(theta).subspan(at, static_cast<std::size_t>(term->size()));
+  theta[1] = std::log(low_decile(spectrum.density)) + share();
+  for_each_term(std::span(theta), [&](const NoiseTerm& term, std::span<double> part) {
     part[0] = 0.0;
-    term->draw_shape(spectrum, random, part);
     std::ranges::fill(shape, 0.0);
-    term->add_density(part, spectrum, shape);
+    term.add_density(part, spectrum, shape);
     part[0] = std::log(under(spectrum, shape)) + share();
-    at += part.size();
-  }
+  });
   for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], low[i], high[i]);
   return theta;
 }
@@ -86,11 +101,9 @@ void ModelCandidate::density(std::span<const double> theta, const RecordSpectrum
                              std::span<double> out) const {
   const double q = std::exp(theta[0]), r = std::exp(theta[1]);
   for (std::size_t b = 0; b < out.size(); ++b) out[b] = r + q * spectrum.walk[b];
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    term->add_density(theta.subspan(at, static_cast<std::size_t>(term->size())), spectrum, out);
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    term.add_density(part, spectrum, out);
+  });
 }
 
 FilterSettings ModelCandidate::settings(std::span<const double> theta, double scale) const {
@@ -98,14 +111,11 @@ FilterSettings ModelCandidate::settings(std::span<const double> theta, double sc
   s.state = state_;
   s.process_noise = std::exp(theta[0]) * scale * scale / period_s_;
   s.measurement_noise = std::exp(theta[1]) * scale * scale;
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    std::vector<double> own =
-        term->parameters(theta.subspan(at, static_cast<std::size_t>(term->size())), period_s_);
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    std::vector<double> own = term.parameters(part, period_s_);
     own.back() *= scale * scale / s.process_noise;
     s.state_parameters.insert(s.state_parameters.end(), own.begin(), own.end());
-    at += static_cast<std::size_t>(term->size());
-  }
+  });
   return s;
 }
 
@@ -113,13 +123,9 @@ std::vector<CandidateFigure> ModelCandidate::figures(std::span<const double> the
   const FilterSettings s = settings(theta, scale);
   std::vector<CandidateFigure> all{{"process_noise", "rad^2/s^3", s.process_noise},
                                    {"measurement_noise", "rad^2/s^2", s.measurement_noise}};
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    const auto own =
-        term->figures(theta.subspan(at, static_cast<std::size_t>(term->size())), scale, period_s_);
-    all.insert(all.end(), own.begin(), own.end());
-    at += static_cast<std::size_t>(term->size());
-  }
+  for_each_term(theta, [&](const NoiseTerm& term, std::span<const double> part) {
+    std::ranges::copy(term.figures(part, scale, period_s_), std::back_inserter(all));
+  });
   return all;
 }
 

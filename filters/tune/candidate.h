@@ -42,6 +42,9 @@ class ModelCandidate {
 
  private:
   static constexpr std::size_t kLevel = 2;  // number of the level's parameters, first in theta
+  template <typename T, typename Use>
+  void for_each_term(std::span<T> theta, Use use) const;
+
   std::string state_;
   double period_s_;
   std::vector<std::unique_ptr<NoiseTerm>> terms_;

@@ -113,9 +113,9 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
     }
     if (theta[i] - step[i] <= low[i] || theta[i] + step[i] >= high[i]) known[i] = false;
   }
-  std::vector<std::size_t> index;
+  std::vector<Eigen::Index> index;
   for (std::size_t i = 0; i < n; ++i)
-    if (known[i]) index.push_back(i);
+    if (known[i]) index.push_back(static_cast<Eigen::Index>(i));
   const auto value = [&](std::size_t i, double di, std::size_t j, double dj) {
     std::vector<double> moved = theta;
     moved[i] += di * step[i];
@@ -126,7 +126,8 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
   Eigen::MatrixXd hessian(m, m);
   for (Eigen::Index a = 0; a < m; ++a)
     for (Eigen::Index b = 0; b <= a; ++b) {
-      const std::size_t i = index[static_cast<std::size_t>(a)], j = index[static_cast<std::size_t>(b)];
+      const auto i = static_cast<std::size_t>(index[static_cast<std::size_t>(a)]),
+                 j = static_cast<std::size_t>(index[static_cast<std::size_t>(b)]);
       hessian(a, b) = hessian(b, a) =
           a == b ? (value(i, 1, j, 0) - 2.0 * at + value(i, -1, j, 0)) / (step[i] * step[i])
                  : (value(i, 1, j, 1) - value(i, 1, j, -1) - value(i, -1, j, 1) + value(i, -1, j, -1)) /
@@ -139,12 +140,35 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
     known.assign(n, false);
     return full;
   }
-  const Eigen::MatrixXd inverse = solver.inverse();
-  for (Eigen::Index a = 0; a < m; ++a)
-    for (Eigen::Index b = 0; b < m; ++b)
-      full(static_cast<Eigen::Index>(index[static_cast<std::size_t>(a)]),
-           static_cast<Eigen::Index>(index[static_cast<std::size_t>(b)])) = inverse(a, b);
+  full(index, index) = solver.inverse();
   return full;
+}
+
+bool bound_hidden_walk(const RecordObjective& objective, std::vector<double>& theta) {
+  constexpr double kAllowed = 0.5;  // of -ln L: one standard deviation
+  std::vector<double> low(theta.size()), high(theta.size());
+  objective.candidate().bounds(low, high);
+  const auto cost = [&](double ln_q) {
+    std::vector<double> other = theta;
+    other[0] = ln_q;
+    return objective(other);
+  };
+  const double none = cost(low[0]), best = std::min(none, objective(theta));
+  if (none > best + kAllowed) return false;
+  // Doubles from the optimum upwards, then bisects.
+  double inside = theta[0], outside = inside;
+  while (outside < high[0]) {
+    outside = std::min(inside + 0.7, high[0]);
+    if (cost(outside) > best + kAllowed) break;
+    inside = outside;
+  }
+  constexpr double kNear = 0.02;
+  while (outside - inside > kNear) {
+    const double middle = 0.5 * (inside + outside);
+    (cost(middle) > best + kAllowed ? outside : inside) = middle;
+  }
+  theta[0] = inside;
+  return true;
 }
 
 }  // namespace ifog

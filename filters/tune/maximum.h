@@ -34,4 +34,9 @@ double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& inf
 Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::MatrixXd& information,
                               const std::vector<double>& theta, std::vector<bool>& known);
 
+// Returns true if the record does not distinguish the level's walk from none within 0.5 of -ln L. Then theta
+// is the fastest walk within 0.5 of the best (one standard deviation). A filter without a walk would not
+// follow a moving level, while a walk that is too fast costs little.
+[[nodiscard]] bool bound_hidden_walk(const RecordObjective& objective, std::vector<double>& theta);
+
 }  // namespace ifog

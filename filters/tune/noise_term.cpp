@@ -4,101 +4,15 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <iterator>
-#include <numbers>
 
 #include "filters/state_models/state_name.h"
 
 namespace ifog {
 namespace {
 
-using Random = std::mt19937_64;
-
-double between(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-// theta: ln variance, ln correlation time in samples.
-class GaussMarkovTerm final : public NoiseTerm {
- public:
-  [[nodiscard]] int size() const override { return 2; }
-  void bounds(std::span<double> low, std::span<double> high) const override {
-    low[0] = -20.0;
-    high[0] = 8.0;
-    low[1] = -1.0;
-    high[1] = 14.0;
-  }
-  void draw_shape(const RecordSpectrum& spectrum, Random& random, std::span<double> theta) const override {
-    theta[1] = between(random, -0.5, std::log(static_cast<double>(spectrum.samples)));
-  }
-  void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
-                   std::span<double> out) const override {
-    // avoids cancellation in 1 - a for long correlation times
-    const double a = std::exp(-std::exp(-theta[1])), less = -std::expm1(-std::exp(-theta[1]));
-    const double top = std::exp(theta[0]) * less * (1.0 + a);
-    for (std::size_t b = 0; b < out.size(); ++b)
-      out[b] += top / (less * less + 2.0 * a * (1.0 - spectrum.cosine[0][b]));
-  }
-  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
-                                               double period_s) const override {
-    const double tau = std::exp(theta[1]) * period_s;
-    return {tau, 2.0 * std::exp(theta[0]) / tau};
-  }
-  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
-                                                     double period_s) const override {
-    return {{"gauss_markov_sigma", "rad/s", std::exp(0.5 * theta[0]) * scale},
-            {"gauss_markov_correlation_time", "s", std::exp(theta[1]) * period_s}};
-  }
-};
-
-// Coefficients of B, B^2, … in the product of the factors 1 - root B.
-std::vector<double> expanded(std::span<const std::complex<double>> roots) {
-  std::vector<std::complex<double>> poly{1.0};
-  for (const auto& root : roots) {
-    poly.push_back(0.0);
-    for (std::size_t i = poly.size() - 1; i > 0; --i) poly[i] -= root * poly[i - 1];
-  }
-  std::vector<double> out;
-  for (std::size_t i = 1; i < poly.size(); ++i) out.push_back(poly[i].real());
-  return out;
-}
-
-// A peak of the spectrum, or any frequency.
-double drawn_frequency(const RecordSpectrum& spectrum, Random& random) {
-  if (between(random, 0.0, 1.0) < 0.5) return between(random, 0.0, std::numbers::pi);
-  std::vector<double> height;
-  for (std::size_t b = 0; b < spectrum.bins(); ++b) {
-    const std::size_t reach = 1 + b / 3;
-    const double low = spectrum.coarse[b - std::min(b, reach)];
-    const double high = spectrum.coarse[std::min(b + reach, spectrum.bins() - 1)];
-    const double above = spectrum.coarse[b] / std::sqrt(low * high);
-    height.push_back(above > 1.5 ? std::min(above, 10.0) : 0.0);
-  }
-  if (std::ranges::all_of(height, [](double h) { return h <= 0.0; }))
-    return between(random, 0.0, std::numbers::pi);
-  return spectrum.omega[std::discrete_distribution<std::size_t>(height.begin(), height.end())(random)];
-}
-
-// Real roots and pairs, at a logarithmically drawn distance inside the unit circle.
-std::vector<std::complex<double>> drawn_roots(int count, const RecordSpectrum& spectrum, double nearest,
-                                              Random& random) {
-  std::vector<std::complex<double>> roots;
-  while (static_cast<int>(roots.size()) < count) {
-    const double radius = 1.0 - std::exp(between(random, std::log(nearest), std::log(0.95)));
-    if (static_cast<int>(roots.size()) + 2 <= count && between(random, 0.0, 1.0) < 0.5) {
-      const auto root = std::polar(radius, drawn_frequency(spectrum, random));
-      roots.push_back(root);
-      roots.push_back(std::conj(root));
-    } else {
-      roots.emplace_back(between(random, 0.0, 1.0) < 0.75 ? radius : -radius);
-    }
-  }
-  return roots;
-}
-
 // theta: ln variance of the innovation e, atanh of p partial autocorrelations and of q of the MA part.
-class ArmaTerm final : public NoiseTerm {
+class ArmaTerm : public NoiseTerm {
  public:
   ArmaTerm(int p, int q) : p_(p), q_(q) {}
   [[nodiscard]] int size() const override { return 1 + p_ + q_; }
@@ -107,17 +21,6 @@ class ArmaTerm final : public NoiseTerm {
     high[0] = 8.0;
     std::fill_n(low.begin() + 1, p_ + q_, -kMost);
     std::fill_n(high.begin() + 1, p_ + q_, kMost);
-  }
-  void draw_shape(const RecordSpectrum& spectrum, Random& random, std::span<double> theta) const override {
-    const auto place = [&](std::size_t first, std::vector<double> coefficients) {
-      std::transform(coefficients.begin(), coefficients.end(), coefficients.begin(), std::negate<>());
-      const std::vector<double> partial = partial_from_ar(coefficients);
-      for (std::size_t i = 0; i < partial.size(); ++i)
-        theta[first + i] = std::clamp(std::atanh(std::clamp(partial[i], -0.99999, 0.99999)), -kMost, kMost);
-    };
-    const double nearest = std::max(1e-5, 4.0 / static_cast<double>(spectrum.samples));
-    place(1, expanded(drawn_roots(p_, spectrum, nearest, random)));
-    place(1 + count(p_), expanded(drawn_roots(q_, spectrum, 0.01, random)));
   }
   void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
@@ -175,6 +78,34 @@ class ArmaTerm final : public NoiseTerm {
   int p_, q_;
 };
 
+// At the samples an AR(1) with positive coefficient.
+class GaussMarkovTerm final : public ArmaTerm {
+ public:
+  GaussMarkovTerm() : ArmaTerm(1, 0) {}
+  void bounds(std::span<double> low, std::span<double> high) const override {
+    ArmaTerm::bounds(low, high);
+    low[1] = 0.02;  // a quarter of a sample
+    high[1] = 8.0;  // a million samples
+  }
+  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
+                                               double period_s) const override {
+    const double tau_s = correlation(theta[1]) * period_s;
+    return {tau_s, 2.0 * variance(theta) / tau_s};
+  }
+  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
+                                                     double period_s) const override {
+    return {{"gauss_markov_sigma", "rad/s", std::sqrt(variance(theta)) * scale},
+            {"gauss_markov_correlation_time", "s", correlation(theta[1]) * period_s}};
+  }
+
+ private:
+  static double correlation(double partial) { return -1.0 / std::log(std::tanh(partial)); }  // samples
+  // 1 - tanh² = 1 / cosh², without cancellation for long correlation times.
+  static double variance(std::span<const double> theta) {
+    return std::exp(theta[0]) * std::pow(std::cosh(theta[1]), 2);
+  }
+};
+
 }  // namespace
 
 std::vector<double> ar_from_partial(std::span<const double> partial) {
@@ -185,17 +116,6 @@ std::vector<double> ar_from_partial(std::span<const double> partial) {
     for (std::size_t i = 0; i < k; ++i) phi[i] = last[i] - partial[k] * last[k - 1 - i];
   }
   return phi;
-}
-
-std::vector<double> partial_from_ar(std::vector<double> phi) {
-  std::vector<double> partial(phi.size());
-  for (std::size_t k = phi.size(); k-- > 0;) {
-    partial[k] = phi[k];
-    const std::vector<double> last = phi;
-    for (std::size_t i = 0; i < k; ++i)
-      phi[i] = (last[i] + partial[k] * last[k - 1 - i]) / (1.0 - partial[k] * partial[k]);
-  }
-  return partial;
 }
 
 std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name) {

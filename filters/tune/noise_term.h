@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +22,6 @@ class NoiseTerm {
   virtual ~NoiseTerm() = default;
   [[nodiscard]] virtual int size() const = 0;  // number of free parameters; the first is ln of a variance
   virtual void bounds(std::span<double> low, std::span<double> high) const = 0;
-  // Random shape, guided by the spectrum; does not change the first parameter.
-  virtual void draw_shape(const RecordSpectrum& spectrum, std::mt19937_64& random,
-                          std::span<double> theta) const = 0;
   // Adds the expected density at each bin of the spectrum.
   virtual void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                            std::span<double> out) const = 0;
@@ -40,8 +36,7 @@ class NoiseTerm {
 std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name);
 
 // Coefficients of a stationary AR(p) from partial autocorrelations in (−1, 1), by the Durbin-Levinson
-// recursion (Barndorff-Nielsen and Schou, J. Multivariate Analysis 3, 1973); and the inverse.
+// recursion (Barndorff-Nielsen and Schou, J. Multivariate Analysis 3, 1973).
 std::vector<double> ar_from_partial(std::span<const double> partial);
-std::vector<double> partial_from_ar(std::vector<double> phi);
 
 }  // namespace ifog

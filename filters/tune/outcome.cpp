@@ -4,37 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/allan/deviation.h"
+#include "filters/compare/figures.h"
 #include "filters/estimator/estimator.h"
 
 namespace ifog {
 namespace {
 
 RateFigures figures_of(std::span<const double> rate, double period_s) {
-  RateFigures out;
-  double count = 0.0, mean = 0.0, square = 0.0;
-  for (const double v : rate) {
-    if (!std::isfinite(v)) continue;
-    count += 1.0;
-    const double difference = v - mean;
-    mean += difference / count;
-    square += difference * (v - mean);
-  }
-  out.rms_radps = count > 0.0 ? std::sqrt(square / count) : 0.0;
-  const std::vector<Stretch> all = stretches({}, rate, SampleClock{.period_s = period_s});
-  if (all.empty()) return out;
-  const AngleSum sum(rate, all);
-  for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t) {
-    const double samples = std::round(kOutcomeTaus[t] / period_s);
-    // A multiple of the sample time within a tenth of it.
-    if (std::abs(samples * period_s / kOutcomeTaus[t] - 1.0) > 0.1 ||
-        3.0 * samples > static_cast<double>(rate.size()))
-      continue;
-    const std::array<std::size_t, 1> m{static_cast<std::size_t>(samples)};
-    const DeviationPoint point = deviation(sum, m, Deviation::kAllan)[0];
-    if (point.terms > 0) out.adev_radps[t] = std::sqrt(point.variance);
-  }
-  return out;
+  return {spread(rate),
+          reported_deviations(rate, stretches({}, rate, SampleClock{.period_s = period_s}), period_s)};
 }
 
 std::vector<double> ahead_of(std::span<const double> measured, std::span<const double> published) {

@@ -2,22 +2,19 @@
 // Result of the estimator on a record with given settings: published against measured rate.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "filters/allan/deviation.h"
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
 
-inline constexpr std::array<double, 4> kOutcomeTaus{0.1, 1.0, 10.0, 100.0};  // s
+inline constexpr const auto& kOutcomeTaus = kReportedTaus;
 
 struct RateFigures {
   double rms_radps = 0.0;  // about the mean
-  // Overlapping Allan deviation at kOutcomeTaus; nullopt: no multiple of a sample, or longer than a third of the
-  // record.
-  std::array<std::optional<double>, kOutcomeTaus.size()> adev_radps{};
+  ReportedDeviations adev_radps;
 };
 
 struct Outcome {

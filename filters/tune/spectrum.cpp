@@ -51,22 +51,6 @@ std::vector<double> cosine_squares(std::span<const double> values) {
   return squares;
 }
 
-void smooth(RecordSpectrum& s) {
-  constexpr double kEnough = 16.0;
-  s.coarse.resize(s.bins());
-  for (std::size_t b = 0; b < s.bins(); ++b) {
-    double sum = s.density[b] * s.ordinates[b], count = s.ordinates[b];
-    for (std::size_t reach = 1; count < kEnough && reach < s.bins(); ++reach) {
-      for (const std::size_t other : {b + reach, b >= reach ? b - reach : s.bins()}) {
-        if (other >= s.bins()) continue;
-        sum += s.density[other] * s.ordinates[other];
-        count += s.ordinates[other];
-      }
-    }
-    s.coarse[b] = sum / count;
-  }
-}
-
 }  // namespace
 
 RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes) {
@@ -98,7 +82,6 @@ RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes) {
       s.sine[order].push_back(std::sin(static_cast<double>(order + 1) * omega));
     }
   }
-  smooth(s);
   return s;
 }
 

@@ -24,8 +24,7 @@ struct RecordSpectrum {
   std::vector<double> walk;       // density of a random walk with unit steps
   // cos and sin of 1 … kOrders times omega.
   std::array<std::vector<double>, kOrders> cosine, sine;
-  std::vector<double> coarse;  // density averaged over neighbours with at least 16 squares
-  std::size_t samples = 0;     // of the transform
+  std::size_t samples = 0;  // of the transform
 
   [[nodiscard]] std::size_t bins() const { return omega.size(); }
 };

@@ -11,7 +11,6 @@
 #include "filters/threads/share_out.h"
 #include "filters/tune/candidate.h"
 #include "filters/tune/choice.h"
-#include "filters/tune/hidden_walk.h"
 #include "filters/tune/maximum.h"
 #include "filters/tune/spectrum.h"
 #include "filters/tune/whittle.h"
@@ -20,12 +19,10 @@ namespace ifog {
 namespace {
 
 // Random starts per parameter in addition to the level's two.
-constexpr std::size_t kDraws = 30;
-// Number of the spectrum's optima whose exact likelihood is computed, and largest loss for further
-// optimisation; the two likelihoods differ by a few units.
-constexpr std::size_t kLooked = 8;
-constexpr std::size_t kFollowed = 3;
-constexpr double kFar = 30.0;
+constexpr std::size_t kDraws = 60;
+// Number of the spectrum's optima whose exact likelihood is computed, and of the best of these, which are optimised further;
+// the two likelihoods differ by a few units.
+constexpr std::size_t kLooked = 8, kFollowed = 3;
 
 // Axes divided by their own scales, so that all count equally.
 struct Data {
@@ -36,50 +33,39 @@ struct Data {
   std::size_t samples = 0;
 };
 
-struct Differences {
+// Mean square of successive differences, and their number.
+std::pair<double, std::size_t> differences(std::span<const double> axis) {
   double squares = 0.0;
   std::size_t count = 0;
-  [[nodiscard]] double variance() const { return squares / static_cast<double>(count); }
-};
-
-Differences differences(std::span<const double> axis) {
-  Differences all;
-  for (std::size_t k = 1; k < axis.size(); ++k) {
-    const double d = axis[k] - axis[k - 1];
-    if (!std::isfinite(d)) continue;
-    all.squares += d * d;
-    ++all.count;
-  }
-  return all;
+  for (std::size_t k = 1; k < axis.size(); ++k)
+    if (const double d = axis[k] - axis[k - 1]; std::isfinite(d)) squares += d * d, ++count;
+  return {count > 0 ? squares / static_cast<double>(count) : 0.0, count};
 }
 
 Data scaled(std::span<const std::span<const double>> axes, double period_s) {
   Data data;
   data.period_s = period_s;
-  double mean = 0.0, loud = 0.0;
+  std::vector<double> variances;
+  double sum = 0.0, loud = 0.0;
   std::size_t n = 0;
   for (const auto& axis : axes) {
-    const Differences own = differences(axis);
-    n += own.count;
-    if (!(own.squares > 0.0)) continue;
-    mean += own.variance();
-    loud += 1.0;
+    const auto [variance, count] = differences(axis);
+    variances.push_back(variance);
+    sum += variance, loud += variance > 0.0 ? 1.0 : 0.0;
+    n += count;
   }
   if (n < 200) throw std::invalid_argument(std::to_string(n) + " usable samples, expected at least 200");
   if (loud <= 0.0) throw std::invalid_argument("every sample has the same value, expected a sensor's noise");
-  data.scale = std::sqrt(mean / loud);
-  for (const auto& axis : axes) {
-    const Differences of_axis = differences(axis);
-    const double own = of_axis.squares > 0.0 ? std::sqrt(of_axis.variance()) : data.scale;
+  data.scale = std::sqrt(sum / loud);
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const double own = variances[a] > 0.0 ? std::sqrt(variances[a]) : data.scale;
     // Subtracts the first value to keep digits; the level is in the model.
-    const auto first = std::ranges::find_if(axis, [](double v) { return std::isfinite(v); });
-    const double level = first == axis.end() ? 0.0 : *first;
+    const auto first = std::ranges::find_if(axes[a], [](double v) { return std::isfinite(v); });
+    const double level = first == axes[a].end() ? 0.0 : *first;
     auto& copy = data.axes.emplace_back();
-    std::size_t samples = 0;
-    for (const double v : axis) {
-      copy.push_back((v - level) / own);
-      samples += std::isfinite(v) ? 1U : 0U;
-    }
+    for (const double v : axes[a]) copy.push_back((v - level) / own);
+    const auto samples =
+        static_cast<std::size_t>(std::ranges::count_if(axes[a], [](double v) { return std::isfinite(v); }));
     data.samples += samples;
     data.log_scales += static_cast<double>(samples) * std::log(own);
   }
@@ -102,17 +88,13 @@ Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const R
   const std::size_t draws = kDraws * static_cast<std::size_t>(candidate.size() - 1);
   const std::vector<WhittleOptimum> optima = whittle_optima(candidate, spectrum, draws);
   std::vector<Fit> starts;
-  for (std::size_t i = 0; i < std::min(optima.size(), kLooked); ++i) {
-    if (optima[i].cost > optima[0].cost + kFar) break;
+  for (std::size_t i = 0; i < std::min(optima.size(), kLooked); ++i)
     starts.push_back({optima[i].theta, objective(optima[i].theta), {}});
-  }
   std::ranges::sort(starts, {}, &Fit::cost);
-  if (starts.size() > kFollowed) starts.resize(kFollowed);
-  Fit best;
-  for (Fit& start : starts) {
+  starts.resize(std::min(starts.size(), kFollowed));
+  for (Fit& start : starts)
     start.cost = find_maximum(objective, whittle_information(candidate, spectrum, start.theta), start.theta);
-    if (start.cost < best.cost) best = std::move(start);
-  }
+  Fit best = std::ranges::min(starts, {}, &Fit::cost);
   best.information = whittle_information(candidate, spectrum, best.theta);
   return best;
 }
@@ -123,25 +105,24 @@ std::vector<TunedFigure> figures_with_errors(const ModelCandidate& candidate,
                                              const Eigen::MatrixXd& covariance,
                                              const std::vector<bool>& known) {
   const auto base = candidate.figures(theta, scale);
-  std::vector<std::vector<CandidateFigure>> moved;
+  Eigen::MatrixXd slope(std::ssize(base), std::ssize(theta));
   constexpr double kStep = 1e-6;
   for (std::size_t i = 0; i < theta.size(); ++i) {
     std::vector<double> other = theta;
     other[i] += kStep;
-    moved.push_back(candidate.figures(other, scale));
+    const auto moved = candidate.figures(other, scale);
+    for (std::size_t f = 0; f < base.size(); ++f)
+      slope(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i)) =
+          (moved[f].value - base[f].value) / kStep;
   }
   std::vector<TunedFigure> out;
   for (std::size_t f = 0; f < base.size(); ++f) {
-    Eigen::VectorXd gradient(static_cast<Eigen::Index>(theta.size()));
+    const Eigen::RowVectorXd gradient = slope.row(static_cast<Eigen::Index>(f));
     bool all_known = true;
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-      const double slope = (moved[i][f].value - base[f].value) / kStep;
-      gradient(static_cast<Eigen::Index>(i)) = slope;
-      if (slope != 0.0 && !known[i]) all_known = false;
-    }
-    TunedFigure figure{base[f].name, base[f].unit, base[f].value, std::nullopt};
-    if (all_known) figure.std_error = std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
-    out.push_back(std::move(figure));
+    for (std::size_t i = 0; i < theta.size(); ++i)
+      all_known = all_known && (known[i] || gradient[static_cast<Eigen::Index>(i)] == 0.0);
+    out.push_back({base[f].name, base[f].unit, base[f].value, std::nullopt});
+    if (all_known) out.back().std_error = std::sqrt(std::max(0.0, gradient.dot(gradient * covariance)));
   }
   return out;
 }

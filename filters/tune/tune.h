@@ -33,7 +33,7 @@ struct TunedModel {
   int parameters = 0;
   double log_likelihood = 0.0;
   double bic = 0.0;  // parameters × ln n − 2 ln L; smaller is better
-  // The walk is not distinguishable from none: process_noise is its upper limit (hidden_walk.h), and all
+  // The walk is not distinguishable from none: process_noise is its upper limit (maximum.h), and all
   // figures except the likelihood are for this value.
   bool walk_is_bound = false;
   std::optional<Outcome> held_out;  // of the models that were tested

@@ -27,26 +27,19 @@ class Objective {
   void local(const std::vector<double>& theta, Eigen::VectorXd& gradient, Eigen::MatrixXd& information) {
     constexpr double kStep = 1e-6;
     candidate_.density(theta, spectrum_, density_);
-    const auto bins = static_cast<Eigen::Index>(density_.size());
-    const auto n = static_cast<Eigen::Index>(theta.size());
-    Eigen::MatrixXd slope(bins, n);
-    std::vector<double> other = theta;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      other[at] += kStep;
+    const auto columns = [](const std::vector<double>& v) {
+      return Eigen::Map<const Eigen::ArrayXd>(v.data(), std::ssize(v));
+    };
+    const auto density = columns(density_);
+    Eigen::MatrixXd slope(density.size(), std::ssize(theta));
+    for (std::size_t i = 0; i < theta.size(); ++i) {
+      std::vector<double> other = theta;
+      other[i] += kStep;
       candidate_.density(other, spectrum_, moved_);
-      other[at] = theta[at];
-      for (Eigen::Index b = 0; b < bins; ++b) {
-        const auto bin = static_cast<std::size_t>(b);
-        slope(b, i) = (moved_[bin] - density_[bin]) / (density_[bin] * kStep);
-      }
+      slope.col(static_cast<Eigen::Index>(i)) = (columns(moved_) - density) / (density * kStep);
     }
-    Eigen::VectorXd weight(bins), misfit(bins);
-    for (Eigen::Index b = 0; b < bins; ++b) {
-      const auto bin = static_cast<std::size_t>(b);
-      weight(b) = 0.5 * spectrum_.ordinates[bin];
-      misfit(b) = weight(b) * (1.0 - spectrum_.density[bin] / density_[bin]);
-    }
+    const Eigen::VectorXd weight = 0.5 * columns(spectrum_.ordinates);
+    const Eigen::VectorXd misfit = weight.array() * (1.0 - columns(spectrum_.density) / density);
     gradient = slope.transpose() * misfit;
     information = slope.transpose() * weight.asDiagonal() * slope;
   }

@@ -20,47 +20,19 @@ double mean_of(std::span<const double> part) {
   return std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(part.size());
 }
 
-// Generalised covariance of the rate samples for one unit of each term.
-TermVariances covariance_of_rate(std::size_t lag) {
-  const auto t = static_cast<double>(lag);
-  const double flicker =
-      2.0 * covariance_of_angle(t)[kB] - covariance_of_angle(t + 1.0)[kB] - covariance_of_angle(t - 1.0)[kB];
-  return {0.0, lag == 0 ? 1.0 : 0.0, flicker, lag == 0 ? -1.0 / 6.0 : -0.5 * t};
-}
-
 using LevelCovariance = std::array<TermVariances, kLevelLags>;
 
-// A rate of a level is a triangle-weighted sum of samples. Its covariance is that of the samples, convolved
-// with the triangle's autocorrelation.
-LevelCovariance covariance_at(int level, std::span<const TermVariances> of_rate) {
-  const std::size_t step = angles_of(level), width = 2 * step - 1;
-  std::vector<double> triangle(width), weight(2 * width - 1);
-  for (std::size_t i = 0; i < width; ++i)
-    triangle[i] = static_cast<double>(std::min(i + 1, width - i)) /
-                  (static_cast<double>(step) * static_cast<double>(step));
-  for (std::size_t i = 0; i < width; ++i)
-    for (std::size_t j = 0; j < width; ++j) weight[i + width - 1 - j] += triangle[i] * triangle[j];
+// The rate is the second difference of the angle's running sum at the level's step.
+LevelCovariance covariance_at(int level) {
+  const double step = static_cast<double>(angles_of(level)), step4 = step * step * step * step;
   const TermVariances unit = level_unit(level);
   LevelCovariance covariance{};
   for (std::size_t lag = 0; lag < kLevelLags; ++lag) {
-    for (std::size_t d = 0; d < weight.size(); ++d) {
-      const std::size_t to = lag * step + d, from = width - 1;
-      const TermVariances& c = of_rate[to > from ? to - from : from - to];
-      for (const Term t : {kN, kB, kK}) covariance[lag][t] += weight[d] * c[t] / unit[t];
-    }
+    const TermVariances of_sum =
+        covariance_of_sum_differences(angles_of(level), static_cast<double>(lag) * step);
+    for (std::size_t t = 0; t < kTerms; ++t) covariance[lag][t] = of_sum[t] / (step4 * unit[t]);
   }
-  covariance[0][kQ] = 2.0;
-  covariance[1][kQ] = -1.0;
   return covariance;
-}
-
-std::vector<LevelCovariance> all_levels() {
-  std::vector<TermVariances> of_rate;
-  for (std::size_t lag = 0; lag < (kLevelLags + 2) * angles_of(kFinest); ++lag)
-    of_rate.push_back(covariance_of_rate(lag));
-  std::vector<LevelCovariance> levels;
-  for (int level = 0; level <= kFinest; ++level) levels.push_back(covariance_at(level, of_rate));
-  return levels;
 }
 
 }  // namespace
@@ -93,7 +65,11 @@ void AngleMeans::rates(int level, std::size_t begin, std::span<double> rate) con
 }
 
 std::span<const TermVariances> level_covariance(int level) {
-  static const std::vector<LevelCovariance> kLevels = all_levels();
+  static const std::vector<LevelCovariance> kLevels = [] {
+    std::vector<LevelCovariance> levels;
+    for (int each = 0; each <= kFinest; ++each) levels.push_back(covariance_at(each));
+    return levels;
+  }();
   return kLevels[static_cast<std::size_t>(std::min(level, kFinest))];
 }
 

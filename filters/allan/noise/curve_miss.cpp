@@ -2,9 +2,7 @@
 #include "filters/allan/noise/curve_miss.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,19 +18,6 @@ constexpr double kOneSigma = 0.682689;  // of a Gaussian variable within one sta
 // Standard deviations, each exceeded by chance in one of 200 records of 15 octaves; neighbouring octaves
 // correlate by 0.5 (3000 records of white noise; tests/unit/allan/noise_coefficients_test.cpp).
 constexpr double kAtOne = 3.5, kAtTwo = 2.75;
-
-// (rad/s)² at τ, by term.
-struct Share {
-  NoiseCoefficient NoiseCoefficients::*term;
-  double variance;
-};
-std::array<Share, 5> shares_at(const NoiseCoefficients& c, double tau_s) {
-  return {{{&NoiseCoefficients::Q, 3.0 * std::pow(c.Q.value / tau_s, 2)},
-           {&NoiseCoefficients::N, c.N.value * c.N.value / tau_s},
-           {&NoiseCoefficients::B, 2.0 * std::numbers::ln2 / std::numbers::pi * c.B.value * c.B.value},
-           {&NoiseCoefficients::K, c.K.value * c.K.value * tau_s / 3.0},
-           {&NoiseCoefficients::R, std::pow(c.R.value * tau_s, 2) / 2.0}}};
-}
 
 }  // namespace
 
@@ -58,7 +43,7 @@ void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& fou
     before = here;
     if (!counts) continue;
     const auto shares = shares_at(found, tau_s);
-    const auto most = std::ranges::max_element(shares, {}, &Share::variance);
+    const auto most = std::ranges::max_element(shares, {}, &NoiseShare::variance);
     NoiseCoefficient& term = found.*most->term;
     const double share = most->variance / (modelled * modelled);
     const double error = term.value * std::abs(std::expm1(-off)) / share;

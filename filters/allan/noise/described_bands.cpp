@@ -102,8 +102,7 @@ double settled_misfit(const NoiseSpectrum& spectrum, const std::vector<Band>& ba
   for (int round = 0; round < 4; ++round) {
     const NoiseSpectrum loose = loosened(spectrum, bands, misfit);
     const NoiseLikelihood likelihood(loose, Ramp::kProjected);
-    const bool known = std::ranges::any_of(terms, [](double v) { return v > 0.0; });
-    terms = (known ? likelihood.maximise(allowed, terms) : likelihood.maximise(allowed)).variances;
+    terms = likelihood.maximise(allowed, terms).variances;
     const double found = misfit_of(departures(spectrum, bands, terms));
     const bool settled = std::abs(found - misfit) <= 0.02 * found;
     misfit = found;

@@ -6,8 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "filters/allan/noise/angle_means.h"
-
 namespace ifog {
 namespace {
 
@@ -19,50 +17,6 @@ constexpr double kInterval = 3.841459;  // χ² with one degree of freedom, 95 %
 constexpr double kShortest = 32.0;      // samples; shorter ones belong to a filter
 constexpr double kSpacing = 1.5;        // ratio of the correlation times tried
 constexpr double kLongest = 4.0;        // times the record; beyond, it cannot be distinguished from a walk
-
-// Covariance of the level's rates (triangle-weighted samples) for a covariance T/2 exp(-|t|/T).
-struct LevelReturn {
-  double decay;            // from one rate to the next
-  double far, zero, next;  // covariance is far * decay^lag except at lags 0 and 1
-
-  LevelReturn(double step, double correlation) {
-    const double x = step / correlation;
-    decay = std::exp(-x);
-    const double half = std::sinh(0.5 * x) / (0.5 * x);
-    far = 0.5 * correlation * std::pow(half, 4);
-    zero = folded(0.0, x, correlation);
-    next = folded(1.0, x, correlation);
-  }
-
- private:
-  // Integral over the triangle's autocorrelation, a cubic spline, by Simpson's rule between its knots and the
-  // cusp of the exponential.
-  static double folded(double lag, double x, double correlation) {
-    constexpr int kPanels = 32;  // even; the cusp is on a node
-    double sum = 0.0;
-    for (int knot = -2; knot < 2; ++knot)
-      for (int i = 0; i <= kPanels; ++i) {
-        const double u = knot + static_cast<double>(i) / kPanels, a = std::abs(u);
-        const double spline =
-            a < 1.0 ? (4.0 - 6.0 * a * a + 3.0 * a * a * a) / 6.0 : std::pow(2.0 - a, 3) / 6.0;
-        const double weight = i == 0 || i == kPanels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-        sum += weight / (3.0 * kPanels) * spline * std::exp(-std::abs(lag + u) * x);
-      }
-    return 0.5 * correlation * sum;
-  }
-};
-
-Eigen::MatrixXd covariance_of(const SlowPart& part, double correlation) {
-  const Eigen::MatrixXd& w = *part.cosines;
-  const Eigen::Index n = w.rows();
-  const LevelReturn level(std::exp2(part.level), correlation);
-  Eigen::MatrixXd before = w, behind = Eigen::MatrixXd::Zero(n, w.cols());
-  for (Eigen::Index i = 1; i < n; ++i) before.row(i) += level.decay * before.row(i - 1);
-  for (Eigen::Index i = n - 1; i-- > 0;) behind.row(i) = level.decay * (behind.row(i + 1) + w.row(i + 1));
-  const Eigen::MatrixXd adjacent = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
-  return level.far * w.transpose() * (before + behind) + (level.zero - level.far) * w.transpose() * w +
-         (level.next - level.far * level.decay) * (adjacent + adjacent.transpose());
-}
 
 // One correlation time and the most likely variances there.
 struct Tried {
@@ -79,37 +33,30 @@ Tried tried_at(const NoiseSpectrum& spectrum, Ramp ramp, double correlation, con
 // not before `last`.
 double edge(const NoiseSpectrum& spectrum, Ramp ramp, const Tried& peak, double way, double last,
             double none) {
-  const double least = peak.best.log_likelihood - 0.5 * kInterval;
-  Tried inside = peak;
-  double outside = peak.correlation;
-  do {
-    if (way > 1.0 ? outside >= last : outside <= last) return none;
-    outside *= way;
-    const Tried one = tried_at(spectrum, ramp, outside, inside.best.variances);
-    if (one.best.log_likelihood <= least) break;
-    inside = one;
-  } while (true);
-  while (std::abs(std::log(outside / inside.correlation)) > 0.02) {
-    const Tried middle =
-        tried_at(spectrum, ramp, std::sqrt(inside.correlation * outside), inside.best.variances);
-    if (middle.best.log_likelihood > least)
-      inside = middle;
-    else
-      outside = middle.correlation;
+  // Nearly linear in the logarithm of the time.
+  const auto lost = [&](const Tried& at) {
+    return std::sqrt(2.0 * std::max(0.0, peak.best.log_likelihood - at.best.log_likelihood));
+  };
+  const double wanted = std::sqrt(kInterval);
+  for (Tried inside = peak; way > 1.0 ? inside.correlation < last : inside.correlation > last;) {
+    const Tried outside = tried_at(spectrum, ramp, inside.correlation * way, inside.best.variances);
+    if (lost(outside) >= wanted)
+      return inside.correlation * std::pow(way, (wanted - lost(inside)) / (lost(outside) - lost(inside)));
+    inside = outside;
   }
-  return std::sqrt(inside.correlation * outside);
+  return none;
 }
 
 }  // namespace
 
 NoiseSpectrum with_return(const NoiseSpectrum& spectrum, double correlation) {
   NoiseSpectrum out = spectrum;
-  const double corner = 1.0 / correlation;
-  for (SpectralBin& bin : out.bins) {
-    const double turn = 2.0 * std::numbers::pi * bin.frequency;
-    bin.expected[kK] *= turn * turn / (turn * turn + corner * corner);
-  }
-  for (SlowPart& part : out.slow) part.covariance[kK] = covariance_of(part, correlation);
+  const auto bend = [&](auto& part) {
+    const double turns = 2.0 * std::numbers::pi * part.frequency * correlation;
+    part.expected[kK] *= turns * turns / (turns * turns + 1.0);
+  };
+  std::ranges::for_each(out.bins, bend);
+  std::ranges::for_each(out.slow, bend);
   return out;
 }
 
@@ -130,15 +77,18 @@ std::optional<GaussMarkovFit> fit_gauss_markov(const NoiseSpectrum& spectrum, Ra
   };
   const auto top = std::ranges::max_element(all, likelier);
   GaussMarkovFit fit;
-  fit.gain = 2.0 * (top->best.log_likelihood - walks);
-  if (fit.gain <= 0.0) return std::nullopt;
+  if (top->best.log_likelihood <= walks) return std::nullopt;
   Tried peak = *top;
-  for (double step = kSpacing; step > 1.02; step = std::sqrt(step))
-    for (const double t : {peak.correlation * std::sqrt(step), peak.correlation / std::sqrt(step)})
-      if (const Tried one = tried_at(spectrum, ramp, t, peak.best.variances); likelier(peak, one)) {
-        peak = one;
-        break;
-      }
+  if (top != all.begin() && top + 1 != all.end()) {
+    // The top of the parabola through the likeliest and its neighbours.
+    const double longer = (top - 1)->best.log_likelihood - top->best.log_likelihood,
+                 shorter = (top + 1)->best.log_likelihood - top->best.log_likelihood;
+    const double away = 0.5 * (shorter - longer) / (shorter + longer);
+    if (const Tried one =
+            tried_at(spectrum, ramp, top->correlation * std::pow(kSpacing, away), top->best.variances);
+        likelier(peak, one))
+      peak = one;
+  }
   fit.gain = 2.0 * (peak.best.log_likelihood - walks);
   fit.correlation = peak.correlation;
   fit.variances = peak.best.variances;

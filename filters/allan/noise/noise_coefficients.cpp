@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -21,15 +23,9 @@
 namespace ifog {
 namespace {
 
-// Required gain of twice the log-likelihood of the best set with a term over a set without it. kNested: the
-// latter has one term fewer. An absent term passes 6 in 0.72 % of records (half of a χ² with one d.o.f., Self
-// and Liang, J. Am. Stat. Assoc. 82, 1987). kInstead: equally many, another term in its place. kSeveral: more
-// terms, which may fit slightly better.
-constexpr double kNested = 6.0, kInstead = 3.5, kSeveral = -5.0;
-double asked(std::size_t without, std::size_t with) {
-  const double more = static_cast<double>(without) - static_cast<double>(with);
-  return more < 0.0 ? -kNested * more : more > 0.0 ? kSeveral * more : kInstead;
-}
+// Gain of twice the log-likelihood that a term needs. An absent term passes 6 in 0.72 % of records (half of a χ² with
+// one d.o.f., Self and Liang, J. Am. Stat. Assoc. 82, 1987).
+constexpr double kNested = 6.0;
 // Cost of a term in the average over sets of terms, which gives values and error bars.
 constexpr double kCostInAverage = 7.0;
 // A limit printed only for undetected terms must allow for that selection, so it uses the detection
@@ -41,35 +37,23 @@ constexpr double kOneSided = 1.959964;
 // Below, the likelihood's curvature, with the square in its denominator, overflows.
 constexpr double kLeastPower = 1e-120;
 
-// Variance of `term` at which the likelihood, maximised over the others, has fallen by kBound/2. Secant
-// method on the root of twice the loss, which is nearly linear.
+// Variance of `term` at which the likelihood, maximised over the others, has fallen by kBound/2. The root of twice the
+// loss is nearly linear.
 double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::Maximum& best,
                       TermSet allowed, Term term) {
-  TermVariances near = best.variances;
-  const auto lost = [&](double variance) {
-    const auto at = likelihood.maximise_with(term, variance, allowed, near);
-    near = at.variances;
-    return std::sqrt(std::max(0.0, 2.0 * (best.log_likelihood - at.log_likelihood)));
-  };
-  const double wanted = std::sqrt(kBound);
   const auto index = static_cast<Eigen::Index>(term);
-  double low = best.variances[term], lost_low = 0.0;
-  double high = low + wanted / std::sqrt(likelihood.information(best.variances)(index, index));
-  double lost_high = lost(high);
-  constexpr int kMostDoublings = 64;
-  for (int i = 0; i < kMostDoublings && lost_high < wanted; ++i) {
-    low = std::exchange(high, low + 2.0 * (high - low));
-    lost_low = std::exchange(lost_high, lost(high));
-  }
-  for (int i = 0; i < 12; ++i) {
-    const double share = std::clamp((wanted - lost_low) / (lost_high - lost_low), 0.05, 0.95);
-    const double middle = low + share * (high - low), lost_middle = lost(middle);
-    const bool below = lost_middle < wanted;
-    (below ? low : high) = middle;
-    (below ? lost_low : lost_high) = lost_middle;
-    if (std::abs(lost_middle - wanted) < 0.01 * wanted) break;
-  }
-  return high;
+  TermVariances near = best.variances;
+  const auto beyond = [&](double more) {
+    const auto at = likelihood.maximise_with(term, best.variances[term] + more, allowed, near);
+    near = at.variances;
+    return std::sqrt(std::max(0.0, 2.0 * (best.log_likelihood - at.log_likelihood))) - std::sqrt(kBound);
+  };
+  const double guess = std::sqrt(kBound / likelihood.information(best.variances)(index, index));
+  std::uintmax_t most = 64;
+  return best.variances[term] +
+         boost::math::tools::bracket_and_solve_root(
+             beyond, guess, 2.0, true, [](double low, double high) { return high - low < 0.01 * high; }, most)
+             .second;
 }
 
 // Standard deviations of the coefficients (roots of the variances) with all terms of the fit free.
@@ -109,28 +93,14 @@ class TermSets {
   }
   [[nodiscard]] const NoiseLikelihood::Maximum& all() const { return sets_.front().fit; }
 
-  // Smallest margin of the best set with the term over all sets without it; below zero the term is not
-  // needed.
-  [[nodiscard]] double need(std::size_t term) const {
-    double best = -std::numeric_limits<double>::infinity();
-    for (const Entry& with : sets_) {
-      if (!with.whole || !with.set[term]) continue;
-      double passes = std::numeric_limits<double>::infinity();
-      for (const Entry& without : sets_)
-        if (without.whole && !without.set[term])
-          passes = std::min(passes, without.cost - with.cost - asked(without.set.count(), with.set.count()));
-      best = std::max(best, passes);
-    }
-    return std::max(best, -kNested);
-  }
-
-  // Adds the likeliest set's terms if those needed do not suffice, as where each of two can replace the other.
-  [[nodiscard]] TermSet with_replaceable(TermSet needed) const {
-    const auto likeliest = std::ranges::max_element(sets_, {}, weight_of);
-    const auto those = std::ranges::find(sets_, needed, &Entry::set);
-    const bool suffice = those != sets_.end() && those->whole &&
-                         those->cost - likeliest->cost <= asked(needed.count(), likeliest->set.count());
-    return suffice ? needed : needed | likeliest->set;
+  // The best set, each of whose terms gains what it needs.
+  [[nodiscard]] TermSet best() const {
+    return std::ranges::min_element(sets_, {},
+                                    [](const Entry& e) {
+                                      return e.whole ? e.cost + kNested * static_cast<double>(e.set.count())
+                                                     : std::numeric_limits<double>::infinity();
+                                    })
+        ->set;
   }
 
   // Weighted mean of the coefficient over the sets with the term, and the scatter within and among the sets.
@@ -187,23 +157,15 @@ void fit_ramp(const NoiseSpectrum& spectrum, TermSet allowed, const TermVariance
   found.ramp_radps2 = ramp.value / period_s;
   const double error = ramp.std_error / period_s, size = std::abs(found.ramp_radps2);
   NoiseCoefficient& R = found.R;
-  R.score = std::sqrt(std::max(0.0, gain));
   R.present = gain > kRampPresent;
   R.upper = size + (R.present ? kOneSided : std::sqrt(kRampPresent)) * error;
   R.value = R.present ? size : 0.0;
   R.std_error = R.present ? error : R.upper / kOneSided;
 }
 
-// Time up to which the deviations of the random walk and the Gauss-Markov noise agree within 10 %.
-double walk_until(double correlation) {
-  constexpr double kTenth = 1.1 * 1.1;
-  double low = 1e-6 * correlation, high = 100.0 * correlation;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(low * high);
-    (middle / 3.0 > kTenth * returning_variance(correlation, middle) ? high : low) = middle;
-  }
-  return low;
-}
+// Up to this share of the correlation time the deviations of the random walk and the Gauss-Markov noise agree within
+// 10 %: m / 3 = 1.1² returning_variance(1, m).
+constexpr double kWalkUntil = 0.2603;
 
 // Largest relative difference between the terms' and the Gauss-Markov deviation, up to a quarter of the
 // record.
@@ -250,8 +212,7 @@ void find_return(const NoiseSpectrum& measured, const Described& record, std::si
   markov.upper_s = fit->upper * period_s;
   markov.sigma_radps = std::sqrt(0.5 * fit->variances[kK] * fit->correlation);
   markov.walk = std::sqrt(fit->variances[kK] / period_s);
-  markov.walk_until_s = walk_until(fit->correlation) * period_s;
-  markov.score = std::sqrt(fit->gain);
+  markov.walk_until_s = kWalkUntil * markov.correlation_s;
   markov.present = fit->present;
   if (fit->present) found.misfit = std::max(found.misfit, departure(found, markov, longest, period_s));
   found.markov = std::move(markov);
@@ -273,14 +234,12 @@ NoiseCoefficient not_seen(double upper) { return {.std_error = upper / kOneSided
 
 void write_terms(const NoiseLikelihood& likelihood, const TermSets& sets, TermSet allowed, double period_s,
                  NoiseCoefficients& found) {
-  TermSet needed;
-  for (std::size_t t = 0; t < kTerms; ++t) needed[t] = allowed[t] && sets.need(t) > 0.0;
-  const TermSet present = sets.with_replaceable(needed);
+  const TermSet present = sets.best();
   for (std::size_t t = 0; t < kTerms; ++t) {
     NoiseCoefficient& c = found.*kMember[t];
     c = {};
     if (!allowed[t]) continue;
-    const double need = sets.need(t), unit = coefficient_unit(t, period_s);
+    const double unit = coefficient_unit(t, period_s);
     if (present[t]) {
       const TermSets::Average average = sets.average(t);
       c.present = true;
@@ -290,7 +249,6 @@ void write_terms(const NoiseLikelihood& likelihood, const TermSets& sets, TermSe
     } else {
       c = not_seen(std::sqrt(upper_variance(likelihood, sets.all(), allowed, static_cast<Term>(t))) * unit);
     }
-    c.score = std::sqrt(std::max(0.0, need + kNested));
   }
 }
 
@@ -384,11 +342,18 @@ std::string markov_in_words(const NoiseCoefficients& found) {
       markov.walk / kDegreePerHourPerRootHour, markov.walk_until_s);
 }
 
+std::array<NoiseShare, 5> shares_at(const NoiseCoefficients& c, double tau_s) {
+  return {{{&NoiseCoefficients::Q, 3.0 * std::pow(c.Q.value / tau_s, 2)},
+           {&NoiseCoefficients::N, c.N.value * c.N.value / tau_s},
+           {&NoiseCoefficients::B, 2.0 * std::numbers::ln2 / std::numbers::pi * c.B.value * c.B.value},
+           {&NoiseCoefficients::K, c.K.value * c.K.value * tau_s / 3.0},
+           {&NoiseCoefficients::R, std::pow(c.R.value * tau_s, 2) / 2.0}}};
+}
+
 double modelled_deviation(const NoiseCoefficients& found, double tau_s) {
-  const double q = found.Q.value, n = found.N.value, b = found.B.value, k = found.K.value, r = found.R.value;
-  return std::sqrt(3.0 * q * q / (tau_s * tau_s) + n * n / tau_s +
-                   2.0 * std::numbers::ln2 / std::numbers::pi * b * b + k * k * tau_s / 3.0 +
-                   r * r * tau_s * tau_s / 2.0);
+  double variance = 0.0;
+  for (const NoiseShare& share : shares_at(found, tau_s)) variance += share.variance;
+  return std::sqrt(variance);
 }
 
 }  // namespace ifog

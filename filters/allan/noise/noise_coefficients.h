@@ -9,6 +9,7 @@
 // `ifog allan`, `tune` and `diagnose` all use this function.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,6 @@ struct NoiseCoefficient {
   double value = 0.0;      // SI, as in the formula above; 0 when absent
   double std_error = 0.0;  // one standard deviation; of an absent term upper/1.96
   double upper = 0.0;      // 97.5 % upper limit; also valid if the term is not detected
-  double score = 0.0;      // significance in standard deviations
   // Of a present term: shortest averaging time at which it is below the measured curve (a filter suppresses
   // it below that); 0 if it is below everywhere.
   double from_s = 0.0;
@@ -37,7 +37,6 @@ struct MarkovNoise {
   double lower_s = 0.0, upper_s = 0.0;
   double walk = 0.0;                       // K of the equivalent random walk at short τ, rad/s²/√Hz
   double walk_until_s = 0.0;               // up to this τ the random walk's deviation is within 10 %
-  double score = 0.0;                      // significance of the return in standard deviations
   std::vector<GaussMarkovChance> chances;  // possible values; for averages at these samples
   GaussMarkovFit fit;
 };
@@ -63,6 +62,13 @@ struct NoiseCoefficients {
 // Throws std::invalid_argument with a message if the longest stretch has fewer than 64 samples or the rate
 // never changes.
 [[nodiscard]] NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s);
+
+// Allan variance at τ by term, (rad/s)².
+struct NoiseShare {
+  NoiseCoefficient NoiseCoefficients::*term;
+  double variance;
+};
+[[nodiscard]] std::array<NoiseShare, 5> shares_at(const NoiseCoefficients& found, double tau_s);
 
 // Allan deviation at τ of the present terms, rad/s.
 [[nodiscard]] double modelled_deviation(const NoiseCoefficients& found, double tau_s);

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "filters/linear/normal_equations.h"
-#include "filters/linear/projection.h"
-#include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
@@ -18,6 +17,10 @@ constexpr int kMostSteps = 100;
 constexpr double kClose = 1e-7;  // log-likelihood that a further step could gain
 
 Eigen::Index row(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+Eigen::Map<const Eigen::Array4d> of_terms(const TermVariances& v) {
+  return Eigen::Map<const Eigen::Array4d>(v.data());
+}
 
 // Maximum of slopeᵀd − dᵀ·information·d/2 over non-negative variances x + d, by comparing all faces, each
 // with its terms at zero. Clipping a plain scoring step could even decrease the likelihood if terms are
@@ -50,87 +53,61 @@ Eigen::Vector4d scoring_step(const Eigen::Vector4d& x, const Eigen::Vector4d& sl
 
 }  // namespace
 
-NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp) : ramp_(ramp) {
-  unit_.fill(std::numeric_limits<double>::infinity());
-  for (const SpectralBin& bin : spectrum.bins) {
-    if (!bin.used) continue;
-    bins_.push_back(&bin);
-    for (std::size_t t = 0; t < kTerms; ++t)
-      unit_[t] = std::min(unit_[t], std::max(1e-300, bin.power) / bin.expected[t]);
-  }
-  for (const SlowPart& slow : spectrum.slow) {
-    Part part{slow.value, slow.ramp, slow.covariance};
-    if (ramp == Ramp::kProjected && !slow.ramp.isZero()) {
-      // Orthonormal basis of the space orthogonal to the ramp.
-      const Eigen::MatrixXd complement = Projection::complement(slow.ramp);
-      part.value = complement.transpose() * slow.value;
-      for (Eigen::MatrixXd& c : part.covariance) c = (complement.transpose() * c * complement).eval();
-    }
-    parts_.push_back(std::move(part));
-  }
+NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp)
+    : spectrum_(spectrum),
+      ramp_(ramp),
+      unit_(Eigen::Array4d::Constant(std::numeric_limits<double>::infinity())) {
+  for (const SpectralBin& bin : spectrum.bins)
+    if (bin.used) unit_ = unit_.min(std::max(1e-300, bin.power) / of_terms(bin.expected));
 }
 
 NoiseLikelihood::RampEstimate NoiseLikelihood::ramp_at(const Eigen::Vector4d& x) const {
   double along = 0.0, weight = 0.0;
-  for (const Part& part : parts_) {
-    Eigen::MatrixXd c = Eigen::MatrixXd::Zero(part.value.size(), part.value.size());
-    for (std::size_t t = 0; t < kTerms; ++t) c += x[row(t)] * unit_[t] * part.covariance[t];
-    const Eigen::VectorXd g = CholeskyFactor(c).solve(part.ramp);
-    along += g.dot(part.value);
-    weight += g.dot(part.ramp);
+  for (const SlowCosine& slow : spectrum_.slow) {
+    const double expected = (of_terms(slow.expected) * unit_).matrix().dot(x);
+    along += slow.ramp * slow.value / expected;
+    weight += slow.ramp * slow.ramp / expected;
   }
   return {along / weight, 1.0 / std::sqrt(weight)};
 }
 
-void NoiseLikelihood::add_slow(const Eigen::Vector4d& x, TermSet open, State& state) const {
-  const double slope = ramp_ == Ramp::kFree && !parts_.empty() ? ramp_at(x).value : 0.0;
-  for (const Part& part : parts_) {
-    Eigen::VectorXd z = part.value;
-    if (ramp_ == Ramp::kFree) z -= slope * part.ramp;
-    Eigen::MatrixXd c = Eigen::MatrixXd::Zero(z.size(), z.size());
-    for (std::size_t t = 0; t < kTerms; ++t)
-      if (x[row(t)] > 0.0) c += x[row(t)] * unit_[t] * part.covariance[t];
-    const CholeskyFactor cholesky(c);
-    if (!cholesky.exists()) {
-      state.log_likelihood = -std::numeric_limits<double>::infinity();
-      return;
-    }
-    const Eigen::VectorXd y = cholesky.solve(z);
-    state.log_likelihood -= cholesky.log_determinant() + 0.5 * y.dot(z);
-    if (open.none()) continue;
-    std::array<Eigen::MatrixXd, kTerms> share;
-    for (std::size_t t = 0; t < kTerms; ++t) {
-      if (!open[t]) continue;
-      share[t] = unit_[t] * cholesky.solve(part.covariance[t]);
-      state.pull[row(t)] += 0.5 * unit_[t] * y.dot(part.covariance[t] * y);
-      state.push[row(t)] += 0.5 * share[t].trace();
-      for (std::size_t s = 0; s <= t; ++s)
-        if (open[s])
-          state.information(row(s), row(t)) += 0.5 * share[t].cwiseProduct(share[s].transpose()).sum();
-    }
-  }
-}
-
-NoiseLikelihood::State NoiseLikelihood::evaluate(const Eigen::Vector4d& x, TermSet open) const {
+NoiseLikelihood::State NoiseLikelihood::evaluate(const Eigen::Vector4d& x) const {
   State state;
-  for (const SpectralBin* bin : bins_) {
-    Eigen::Vector4d a;
-    for (std::size_t t = 0; t < kTerms; ++t) a[row(t)] = bin->expected[t] * unit_[t];
-    const double expected = a.dot(x), half = 0.5 * bin->degrees;
-    state.log_likelihood -= half * (std::log(expected) + bin->power / expected);
-    if (open.none()) continue;
-    a /= expected;
-    state.pull += half * bin->power / expected * a;
-    state.push += half * a;
-    state.information += half * a * a.transpose();
+  // Returns each term's part of the power per unit_.
+  const auto add = [&](const TermVariances& of_unit, double power, double degrees) -> Eigen::Vector4d {
+    Eigen::Vector4d part = of_terms(of_unit) * unit_;
+    const double expected = part.dot(x), half = 0.5 * degrees;
+    part /= expected;
+    state.log_likelihood -= half * (std::log(expected) + power / expected);
+    state.pull += half * power / expected * part;
+    state.push += half * part;
+    state.information += half * part * part.transpose();
+    return part;
+  };
+  for (const SpectralBin& bin : spectrum_.bins)
+    if (bin.used) add(bin.expected, bin.power, bin.degrees);
+  if (spectrum_.slow.empty()) return state;
+  const RampEstimate ramp = ramp_ == Ramp::kNone ? RampEstimate{} : ramp_at(x);
+  Eigen::Vector4d along = Eigen::Vector4d::Zero();
+  for (const SlowCosine& slow : spectrum_.slow) {
+    const double left = slow.value - ramp.value * slow.ramp;
+    const Eigen::Vector4d part = add(slow.expected, left * left, 1.0);
+    if (ramp_ != Ramp::kProjected) continue;
+    // Share of the ramp's information; the likelihood of what is orthogonal to it lacks that much.
+    const double expected = (of_terms(slow.expected) * unit_).matrix().dot(x);
+    const double share = std::pow(slow.ramp * ramp.std_error, 2) / expected;
+    along += share * part;
+    state.information -= share * part * part.transpose();
   }
-  add_slow(x, open, state);
-  state.information = Eigen::Matrix4d(state.information.selfadjointView<Eigen::Upper>());
+  if (ramp_ != Ramp::kProjected) return state;
+  state.log_likelihood += std::log(ramp.std_error);
+  state.push -= 0.5 * along;
+  state.information += 0.5 * along * along.transpose();
   return state;
 }
 
 NoiseLikelihood::Maximum NoiseLikelihood::climb(TermSet allowed, Eigen::Vector4d x, int careful) const {
-  State now = evaluate(x, allowed);
+  State now = evaluate(x);
   for (int step = 0; step < kMostSteps; ++step) {
     Eigen::Vector4d move = Eigen::Vector4d::Zero();
     if (step < careful) {
@@ -147,7 +124,7 @@ NoiseLikelihood::Maximum NoiseLikelihood::climb(TermSet allowed, Eigen::Vector4d
     for (int half = 0; half < 30 && !(gain >= 0.0); ++half, length *= 0.5) {
       trial = (x + length * move).cwiseMax(0.0);
       if (trial.maxCoeff() <= 0.0) continue;
-      next = evaluate(trial, allowed);
+      next = evaluate(trial);
       gain = next.log_likelihood - now.log_likelihood;
     }
     if (!(gain >= 0.0)) break;
@@ -156,46 +133,35 @@ NoiseLikelihood::Maximum NoiseLikelihood::climb(TermSet allowed, Eigen::Vector4d
   }
   Maximum best;
   best.log_likelihood = now.log_likelihood;
-  for (std::size_t t = 0; t < kTerms; ++t) best.variances[t] = x[row(t)] * unit_[t];
+  Eigen::Map<Eigen::Array4d>(best.variances.data()) = x.array() * unit_;
   return best;
 }
 
-Eigen::Vector4d NoiseLikelihood::in_units(const TermVariances& v) const {
-  Eigen::Vector4d x;
-  for (std::size_t t = 0; t < kTerms; ++t) x[row(t)] = v[t] / unit_[t];
-  return x;
-}
-
-NoiseLikelihood::Maximum NoiseLikelihood::maximise(TermSet allowed) const {
-  TermVariances start{};
-  for (std::size_t t = 0; t < kTerms; ++t) start[t] = allowed[t] ? 0.3 * unit_[t] : 0.0;
-  return climb(allowed, in_units(start), kFromAfar);
-}
-
 NoiseLikelihood::Maximum NoiseLikelihood::maximise(TermSet allowed, const TermVariances& near) const {
+  const bool afar = of_terms(near).maxCoeff() <= 0.0;
   // Starts with a little of every allowed term, because the first steps cannot leave zero.
-  TermVariances start{};
-  for (std::size_t t = 0; t < kTerms; ++t) start[t] = allowed[t] ? std::max(near[t], 1e-4 * unit_[t]) : 0.0;
-  return climb(allowed, in_units(start), kFromNear);
+  Eigen::Vector4d x = (of_terms(near) / unit_).max(afar ? 0.3 : 1e-4);
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (!allowed[t]) x[row(t)] = 0.0;
+  return climb(allowed, x, afar ? kFromAfar : kFromNear);
 }
 
 NoiseLikelihood::Maximum NoiseLikelihood::maximise_with(Term held, double variance, TermSet allowed,
                                                         const TermVariances& near) const {
-  TermVariances start{};
-  for (std::size_t t = 0; t < kTerms; ++t) start[t] = allowed[t] ? std::max(near[t], 1e-4 * unit_[t]) : 0.0;
-  start[held] = variance;
-  return climb(TermSet(allowed).reset(held), in_units(start), kFromNear);
+  Eigen::Vector4d x = (of_terms(near) / unit_).max(1e-4);
+  for (std::size_t t = 0; t < kTerms; ++t)
+    if (!allowed[t]) x[row(t)] = 0.0;
+  x[row(held)] = variance / unit_[row(held)];
+  return climb(TermSet(allowed).reset(held), x, kFromNear);
 }
 
 Eigen::Matrix4d NoiseLikelihood::information(const TermVariances& at) const {
-  Eigen::Matrix4d information = evaluate(in_units(at), TermSet().set()).information;
-  for (std::size_t t = 0; t < kTerms; ++t)
-    for (std::size_t s = 0; s < kTerms; ++s) information(row(t), row(s)) /= unit_[t] * unit_[s];
-  return information;
+  return unit_.inverse().matrix().asDiagonal() * evaluate(of_terms(at) / unit_).information *
+         unit_.inverse().matrix().asDiagonal();
 }
 
 NoiseLikelihood::RampEstimate NoiseLikelihood::ramp(const TermVariances& at) const {
-  return ramp_at(in_units(at));
+  return ramp_at(of_terms(at) / unit_);
 }
 
 }  // namespace ifog

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/noise/noise_spectrum.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -136,130 +137,67 @@ double slow_edge(std::size_t samples) {
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
 }
 
-// Every second one of the first `count` cosines, without the constant, starting at `first`: all even or all
-// odd about the middle.
-Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
-  Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));
-  for (std::size_t k = first; k < count; k += 2)
-    for (std::size_t i = 0; i < n; ++i)
-      w(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>((k - first) / 2)) =
-          std::sqrt(2.0 / static_cast<double>(n)) *
-          std::cos(std::numbers::pi * static_cast<double>(k + 1) * (static_cast<double>(i) + 0.5) /
-                   static_cast<double>(n));
-  return w;
-}
-
-// w'Γw with the Toeplitz matrix Γ of a term; the columns of w are all even or all odd about the middle.
-Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
-                          std::size_t term) {
-  const Eigen::Index n = w.rows();
-  const auto at = [&](Eigen::Index lag) { return covariance[static_cast<std::size_t>(lag)][term]; };
-  if (term == kB) {
-    Eigen::VectorXd lag(n);
-    for (Eigen::Index i = 0; i < n; ++i) lag[i] = at(i);
-    const Eigen::Index half = (n + 1) / 2;
-    Eigen::MatrixXd product(half, w.cols());
-    for (Eigen::Index i = 0; i < half; ++i)
-      product.row(i) =
-          (2 * i + 1 == n ? 1.0 : 2.0) * (lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
-                                          lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i));
-    return w.topRows(half).transpose() * product;
-  }
-  // Covariances of quantisation and white noise are zero beyond lag 1. That of a random walk is −|lag|/2 from
-  // lag 2 on, plus a constant that zero-mean columns cancel.
-  const double walk = term == kK ? 1.0 : 0.0;
-  const Eigen::MatrixXd adjacent = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
-  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (adjacent + adjacent.transpose());
-  if (term == kK) {
-    Eigen::MatrixXd sums = w;
-    for (Eigen::Index i = 1; i < n; ++i) sums.row(i) += sums.row(i - 1);
-    out += sums.transpose() * sums;
-  }
-  return out;
-}
-
-// Stationary noise has no correlation between even and odd parts, so two halves are computed separately.
-std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples) {
+// The slow cosines of a stretch.
+void add_slow(const AngleMeans& means, std::size_t samples, std::vector<SlowCosine>& slow) {
   const int level = last_level(samples);
-  const std::size_t count = means.rates(level);
-  const auto n = static_cast<Eigen::Index>(count);
-  Eigen::VectorXd rate(n), ramp(n);
-  means.rates(level, 0, {rate.data(), count});
-  for (Eigen::Index i = 0; i < n; ++i)
-    ramp[i] = (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * std::exp2(level);
+  const auto n = static_cast<Eigen::Index>(means.rates(level));
+  const double step = std::exp2(level), length = static_cast<double>(n);
+  Eigen::VectorXd rate(n);
+  means.rates(level, 0, {rate.data(), means.rates(level)});
+  const Eigen::ArrayXd place = Eigen::ArrayXd::LinSpaced(n, 0.5, length - 0.5) / length;
+  const std::span<const TermVariances> covariance = level_covariance(level);
   const TermVariances unit = level_unit(level);
-  std::array<SlowPart, 2> parts;
-  for (std::size_t first = 0; first < parts.size(); ++first) {
-    SlowPart& part = parts[first];
-    part.cosines = std::make_shared<const Eigen::MatrixXd>(cosines(count, slow_count(count), first));
-    part.level = level;
-    const Eigen::MatrixXd& w = *part.cosines;
-    part.value = w.transpose() * rate;
-    part.ramp = w.transpose() * ramp;
-    // A ramp is odd.
-    if (first == 1) part.ramp.setZero();
-    for (std::size_t t = 0; t < kTerms; ++t)
-      part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
+  for (std::size_t k = 1; k <= slow_count(means.rates(level)); ++k) {
+    const auto half_turns = static_cast<double>(k);
+    const Eigen::VectorXd w = std::sqrt(2.0 / length) * (std::numbers::pi * half_turns * place).cos();
+    SlowCosine cosine{.frequency = 0.5 * half_turns / (length * step), .value = w.dot(rate)};
+    cosine.ramp = w.dot((place * length).matrix()) * step;
+    for (Eigen::Index lag = 0; lag < n; ++lag) {
+      const double pairs = (lag == 0 ? 1.0 : 2.0) * w.head(n - lag).dot(w.tail(n - lag));
+      for (std::size_t t = 0; t < kTerms; ++t)
+        cosine.expected[t] += unit[t] * pairs * covariance[static_cast<std::size_t>(lag)][t];
+    }
+    slow.push_back(cosine);
   }
-  return parts;
 }
 
-// Spectrum of one level: all stretches that are long enough, above their own slow part.
-class Level {
- public:
-  Level(const Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
-    bins_.resize(power_.size());
-  }
-
-  void add(const AngleMeans& means, std::size_t samples) {
-    const std::size_t size = segment_.size(), count = means.rates(level_);
-    if (count < size || level_ > last_spectrum(samples)) return;
+// Spectrum of one level in ascending frequency: all stretches that are long enough, above their own slow cosines.
+std::vector<SpectralBin> spectrum_of(int level, const Segment& segment, std::span<const AngleMeans> means,
+                                     const AngleSum& sum) {
+  const std::size_t size = segment.size();
+  std::vector<SpectralBin> bins(size / 2);
+  Fourier fourier;
+  for (std::size_t p = 0; p < means.size(); ++p) {
+    const std::size_t samples = sum.parts()[p].angles - 1, count = means[p].rates(level);
+    const int last = last_spectrum(samples);
+    if (count < size || level > last) continue;
     // As many as fit with half overlap, spread from the first sample to the last.
-    std::size_t segments = (count - size + size / 2 - 1) / (size / 2) + 1;
-    segments = std::min(segments, kMostSegments);
+    const std::size_t segments = std::min((count - size + size / 2 - 1) / (size / 2) + 1, kMostSegments);
     const double hop =
         segments > 1 ? static_cast<double>(count - size) / static_cast<double>(segments - 1) : 0.0;
-    std::ranges::fill(power_, 0.0);
-    std::vector<double> rate(size);
+    std::vector<double> power(size / 2), rate(size);
     for (std::size_t s = 0; s < segments; ++s) {
-      const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
-      means.rates(level_, begin, rate);
-      segment_.add_power(rate, fourier_, power_);
+      means[p].rates(level, static_cast<std::size_t>(hop * static_cast<double>(s)), rate);
+      segment.add_power(rate, fourier, power);
     }
     const double degrees =
         2.0 / static_cast<double>(size) *
-        segment_.effective_samples(segments, std::max<std::size_t>(1, static_cast<std::size_t>(hop)));
-    const double bottom = level_ < last_spectrum(samples) ? kBottomOfLevel : slow_edge(samples);
-    const double top = level_ == 0 ? 0.5 : kTopOfLevel;
-    for (std::size_t k = 1; k < bins_.size(); ++k) {
+        segment.effective_samples(segments, std::max<std::size_t>(1, static_cast<std::size_t>(hop)));
+    const double bottom = level < last ? kBottomOfLevel : slow_edge(samples);
+    const double top = level == 0 ? 0.5 : kTopOfLevel;
+    for (std::size_t k = 1; k < bins.size(); ++k) {
       const double frequency = static_cast<double>(k) / static_cast<double>(size);
       if (frequency <= bottom || frequency > top) continue;
-      bins_[k].power += power_[k] / static_cast<double>(segments) * degrees;
-      bins_[k].degrees += degrees;
+      bins[k].frequency = frequency / std::exp2(level);
+      bins[k].expected = segment.expected(level, k);
+      bins[k].power += power[k] / static_cast<double>(segments) * degrees;
+      bins[k].degrees += degrees;
     }
   }
-
-  // In ascending frequency.
-  [[nodiscard]] std::vector<SpectralBin> bins() const {
-    std::vector<SpectralBin> out;
-    for (std::size_t k = 1; k < bins_.size(); ++k) {
-      SpectralBin bin = bins_[k];
-      if (bin.degrees == 0.0) continue;
-      bin.frequency = static_cast<double>(k) / static_cast<double>(segment_.size()) / std::exp2(level_);
-      bin.power /= bin.degrees;
-      bin.expected = segment_.expected(level_, k);
-      out.push_back(bin);
-    }
-    return out;
-  }
-
- private:
-  const Segment& segment_;
-  int level_;
-  Fourier fourier_;
-  std::vector<double> power_;
-  std::vector<SpectralBin> bins_;
-};
+  std::erase_if(bins, [](const SpectralBin& bin) { return bin.degrees == 0.0; });
+  for (SpectralBin& bin : bins) bin.power /= bin.degrees;
+  return bins;
+}
 
 }  // namespace
 
@@ -271,9 +209,8 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::vector<AngleMeans> means;
   for (const AngleSum::Part& part : sum.parts()) means.emplace_back(sum.angle(), part.first, part.angles);
   for (int l = last_spectrum(sum.longest()); l >= 0; --l) {
-    Level level(segment, l);
-    for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);
-    for (const SpectralBin& bin : level.bins()) spectrum.bins.push_back(bin);
+    const std::vector<SpectralBin> bins = spectrum_of(l, segment, means, sum);
+    spectrum.bins.insert(spectrum.bins.end(), bins.begin(), bins.end());
   }
   std::ranges::sort(spectrum.bins, {}, &SpectralBin::frequency);
   // Above, a logger that holds values takes more than 1.3 % of the power.
@@ -286,8 +223,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::ranges::sort(slow, [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
   slow.resize(std::min(slow.size(), kMostSlowStretches));
   for (const std::size_t p : slow)
-    if (samples(p) >= kShortestStretch)
-      for (SlowPart& part : slow_parts(means[p], samples(p))) spectrum.slow.push_back(std::move(part));
+    if (samples(p) >= kShortestStretch) add_slow(means[p], samples(p), spectrum.slow);
   leave_out_lines(spectrum);
   return spectrum;
 }

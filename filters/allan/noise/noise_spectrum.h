@@ -3,15 +3,12 @@
 //   - bins of spectra at steps of 1, 2, 4, … samples (angle_means.h): sine-windowed segments with half
 //   overlap, each minus its mean and slope. A bin is gamma distributed. Its mean is linear in the terms' variances
 //   and includes leakage and aliasing;
-//   - below 16 cycles per stretch, the cosine transform (DCT-II) at the coarsest step: Gaussian with exact
-//   covariance, so an event that happens once in a record counts once.
+//   - below 16 cycles per stretch, the cosine transform (DCT-II) at the coarsest step, with exact variances. An event
+//   that happens once in a record counts once.
 //
 // A line or a resonance affects only few bins. They are detected and dropped.
 #pragma once
 
-#include <Eigen/Dense>
-#include <array>
-#include <memory>
 #include <vector>
 
 #include "filters/allan/power_law.h"
@@ -26,14 +23,12 @@ struct SpectralBin {
   bool used = true;
 };
 
-// Slow cosines of one stretch, either all even or all odd about its middle.
-struct SlowPart {
-  Eigen::VectorXd value;                           // rad/s
-  std::array<Eigen::MatrixXd, kTerms> covariance;  // for one unit of each term's variance
-  Eigen::VectorXd ramp;  // response to a rate that grows by one per sample; may be zero
-  // Cosines of the level's means, one per column; for terms of other covariance.
-  std::shared_ptr<const Eigen::MatrixXd> cosines;
-  int level = 0;
+// Cosine of a whole stretch: Gaussian. White noise and random walks make different cosines independent, and flicker nearly.
+struct SlowCosine {
+  double frequency = 0.0;    // cycles per sample
+  TermVariances expected{};  // its variance for one unit of each term's variance
+  double value = 0.0;        // rad/s
+  double ramp = 0.0;         // response to a rate that grows by one per sample
 };
 
 struct FrequencyRange {
@@ -42,7 +37,7 @@ struct FrequencyRange {
 
 struct NoiseSpectrum {
   std::vector<SpectralBin> bins;  // ascending in frequency
-  std::vector<SlowPart> slow;
+  std::vector<SlowCosine> slow;
   std::vector<FrequencyRange> lines;  // detected lines; their bins are not used
 };
 

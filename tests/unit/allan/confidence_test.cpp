@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/confidence.h"
-#include "filters/allan/estimate_law.h"
 #include "filters/allan/noise/noise_coefficients.h"
-#include "filters/allan/weighted_chi_squared.h"
 #include "tests/unit/test.h"
 #include "tools/simulate/noise.h"
 

@@ -20,48 +20,29 @@ NoiseSpectrum spectrum_of(std::size_t samples) {
 }
 
 // The cosines are orthonormal, and are what a random walk is made of: 1/(4 sin²(πk/2n)), less the sixth that
-// averaging over a sample takes.
-TEST(NoiseSpectrum, TheSlowPartScattersAsTheClosedFormsSay) {
-  for (const std::size_t n : {300U, 301U}) {
-    const NoiseSpectrum spectrum = spectrum_of(n);
-    ASSERT_EQ(spectrum.slow.size(), 2U);
-    for (std::size_t half = 0; half < 2; ++half) {
-      const ifog::SlowPart& part = spectrum.slow[half];
-      const Eigen::Index count = part.value.size();
-      ASSERT_EQ(count, 16);
-      Eigen::VectorXd walk(count);
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const double k = 2.0 * static_cast<double>(i) + static_cast<double>(half) + 1.0;
-        walk[i] =
-            0.25 / std::pow(std::sin(std::numbers::pi * k / (2.0 * static_cast<double>(n))), 2) - 1.0 / 6.0;
-      }
-      EXPECT_LT((part.covariance[ifog::kN] - Eigen::MatrixXd::Identity(count, count)).cwiseAbs().maxCoeff(),
-                1e-9);
-      const Eigen::MatrixXd expected = walk.asDiagonal();
-      EXPECT_LT((part.covariance[ifog::kK] - expected).cwiseAbs().maxCoeff(), 1e-8 * walk[0]);
-      EXPECT_EQ(part.ramp.isZero(), half == 1);
-    }
-  }
-}
-
-// By the double sum.
-TEST(NoiseSpectrum, TheSlowPartOfFlickerIsItsDefinition) {
+// averaging over a sample takes. Flicker by the double sum. A ramp is odd about the middle.
+TEST(NoiseSpectrum, TheSlowCosinesScatterAsTheClosedFormsSay) {
   for (const std::size_t n : {300U, 301U}) {
     const NoiseSpectrum spectrum = spectrum_of(n);
     const std::span<const TermVariances> lag = ifog::level_covariance(0);
-    for (std::size_t half = 0; half < 2; ++half)
-      for (const std::size_t column : {0U, 1U, 15U}) {
-        const double k = 2.0 * static_cast<double>(column) + static_cast<double>(half) + 1.0;
-        const auto w = [&](std::size_t i) {
-          return std::sqrt(2.0 / static_cast<double>(n)) *
-                 std::cos(std::numbers::pi * k * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
-        };
-        double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i)
-          for (std::size_t j = 0; j < n; ++j) sum += w(i) * w(j) * lag[i > j ? i - j : j - i][ifog::kB];
-        const auto c = static_cast<Eigen::Index>(column);
-        EXPECT_NEAR(spectrum.slow[half].covariance[ifog::kB](c, c), sum, 1e-9 * std::abs(sum));
-      }
+    const double length = static_cast<double>(n);
+    ASSERT_EQ(spectrum.slow.size(), 32U);
+    for (const std::size_t k : {1U, 2U, 3U, 32U}) {
+      const ifog::SlowCosine& cosine = spectrum.slow[k - 1];
+      const double turn = std::numbers::pi * static_cast<double>(k) / length;
+      const double walk = 0.25 / std::pow(std::sin(0.5 * turn), 2) - 1.0 / 6.0;
+      EXPECT_NEAR(cosine.frequency, turn / (2.0 * std::numbers::pi), 1e-15);
+      EXPECT_NEAR(cosine.expected[ifog::kN], 1.0, 1e-9);
+      EXPECT_NEAR(cosine.expected[ifog::kK] / walk, 1.0, 1e-6);
+      EXPECT_EQ(std::abs(cosine.ramp) < 1e-9, k % 2 == 0);
+      const auto w = [&](std::size_t i) {
+        return std::sqrt(2.0 / length) * std::cos(turn * (static_cast<double>(i) + 0.5));
+      };
+      double flicker = 0.0;
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) flicker += w(i) * w(j) * lag[i > j ? i - j : j - i][ifog::kB];
+      EXPECT_NEAR(cosine.expected[ifog::kB] / flicker, 1.0, 1e-9);
+    }
   }
 }
 

@@ -96,7 +96,8 @@ TEST_P(ModelLikelihood, IsThatOfTheDenseCovariance) {
     }
     std::vector<double> measured = record;
     if (missing < kLength) measured[static_cast<std::size_t>(missing)] = std::nan("");
-    const auto terms = ifog::likelihood(*model, kQ, kR, measured, kPeriod_s);
+    const std::span<const double> axes[] = {measured};
+    const auto terms = ifog::likelihood(*model, kQ, kR, ifog::LikelihoodRecord(axes), kPeriod_s);
     EXPECT_EQ(terms.count, n - c.diffuse);
     // Either side is off the diffuse limit by some 1e-9 of itself a state.
     EXPECT_NEAR(terms.log_likelihood(),

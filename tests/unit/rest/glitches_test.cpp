@@ -101,6 +101,21 @@ TEST(Glitches, RepeatedValuesAreOut) {
   EXPECT_TRUE(faults.empty());
 }
 
+// A converter of steps as large as the noise repeats values by chance, four times as large it does hardly anything else.
+TEST(Glitches, ACoarseSensorStandsStillForLongOrNot) {
+  for (const double step : {1.0, 4.0}) {
+    std::vector<double> logged = white(20000, 5);
+    for (double& value : logged) value = step * 1e-5 * std::round(value / (step * 1e-5));
+    std::fill_n(logged.begin() + 7000, 100, logged[7000]);
+    Samples rate;
+    rate.append(logged);
+    std::vector<ValueFault> faults;
+    leave_out_repeats(rate, time_s, faults);
+    ASSERT_EQ(faults.size(), step < 2.0 ? 1U : 0U);
+    EXPECT_EQ(std::ranges::count_if(rate, [](double value) { return std::isnan(value); }) >= 100, step < 2.0);
+  }
+}
+
 // A placeholder now and then or in every third row (BonaDrone, raw_data_41.csv), each time for one sample. A single
 // blow, however far, is the sensor's.
 TEST(Glitches, SinglePlaceholdersAreOutHoweverOftenTheyStand) {

@@ -108,55 +108,13 @@ TEST(NoiseChange, NoiseBelowTheSensorsStepStaysTheSame) {
       }
 }
 
-TEST(NoiseChange, AHeldStartIsSaidToStandStillAndHidesNothing) {
-  for (const double held : {0.0, 3.7e-4}) {
-    for (const double held_s : {0.2, 2.0, 5.0, 10.0}) {
-      if (held > 0.0 && held_s < 1.0) continue;  // too short to be set apart, and a step of 37 deviations
-      for (unsigned seed = 1; seed <= 10; ++seed) {
-        std::vector<double> rate = white(6000, seed, 0.0, 1e-5);
-        std::fill(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(held_s * kRate_hz), held);
-        const bool still = held_s > 60.0 / 64.0;
-        std::vector<NoiseChange> found = changes_of(rate);
-        ASSERT_EQ(found.size(), still ? 1U : 0U) << held << ' ' << held_s << ifog::in_words(found);
-        found = changes_of(made_louder(rate, 30.0, 45.0, 3.5));
-        ASSERT_EQ(found.size(), still ? 2U : 1U) << held << ' ' << held_s << ifog::in_words(found);
-        EXPECT_NEAR(found.back().times, 3.5, 1.0);
-        EXPECT_NEAR(found.back().from_s, 30.0, 1.0);
-        EXPECT_NEAR(found.back().to_s, 45.0, 1.0);
-        if (!still) continue;
-        EXPECT_EQ(found.front().times, 0.0);
-        EXPECT_EQ(found.front().from_s, 0.0);
-        EXPECT_NEAR(found.front().to_s, held_s, 1.01 / kRate_hz);
-        EXPECT_TRUE(ifog::test::has(ifog::in_words(found), "it stands still in 0 …"));
-      }
-    }
-  }
-}
-
-TEST(NoiseChange, AStuckHalfIsNoNoise) {
-  for (const bool first : {true, false}) {
-    std::vector<double> rate = white(60'000, 3, 7e-5, 1e-5);
-    const auto middle = rate.begin() + 30'000;
-    std::fill(first ? rate.begin() : middle, first ? middle : rate.end(), 7e-5);
-    const std::vector<NoiseChange> found = changes_of(rate);
-    ASSERT_EQ(found.size(), 1U) << ifog::in_words(found);
-    EXPECT_EQ(found[0].times, 0.0);
-    EXPECT_NEAR(found[0].from_s, first ? 0.0 : 300.0, 0.011);
-    EXPECT_NEAR(found[0].to_s, first ? 300.0 : 600.0, 0.011);
-  }
-  // Inside a record, for longer than the usual noise level is remembered.
-  std::vector<double> rate = white(600'000, 4, 7e-5, 1e-5);
-  std::fill(rate.begin() + 200'000, rate.begin() + 300'000, rate[200'000]);
-  EXPECT_EQ(changes_of(rate).size(), 1U) << ifog::in_words(changes_of(rate));
-}
-
 // However little the rest moves.
 TEST(NoiseChange, LoudnessIsNeverToldAgainstNothing) {
   std::vector<double> rate = white(60'000, 5, 0.0, 1e-5);
   for (std::size_t i = 30'000; i < rate.size(); ++i) rate[i] = 1e-300 * static_cast<double>(i % 2);
   for (const NoiseChange& change : changes_of(rate)) {
     EXPECT_LE(change.times, 1e6);
-    EXPECT_TRUE(change.times >= 1e-6 || change.times == 0.0) << change.times;
+    EXPECT_GE(change.times, 1e-6);
   }
   EXPECT_FALSE(changes_of(rate).empty());
 }

@@ -111,8 +111,10 @@ TEST(TuneChoice, ARecordThatShowsNoWalkGetsTheOneItMightHide) {
     ASSERT_TRUE(walk.std_error.has_value()) << seed;
     EXPECT_EQ(walk.value, t.models[0].settings.process_noise);
     const auto model = ifog::make_state_model("random-walk", {}, kPeriod);
+    const std::span<const double> axes[] = {record.rate};
     const auto at = [&](double q) {
-      return ifog::likelihood(*model, q, t.models[0].settings.measurement_noise, record.rate, kPeriod)
+      return ifog::likelihood(*model, q, t.models[0].settings.measurement_noise, ifog::LikelihoodRecord(axes),
+                              kPeriod)
           .log_likelihood();
     };
     double best = -std::numeric_limits<double>::infinity();

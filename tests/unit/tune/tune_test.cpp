@@ -200,7 +200,9 @@ TEST(Tune, WhittlesLikelihoodOfARandomWalkIsExact) {
     }
   }
   const auto model = ifog::make_state_model("random-walk", {}, 0.01);
-  const double exact = ifog::likelihood(*model, 1e-3 / 0.01, 1.0, walk, 0.01).log_likelihood();
+  const std::span<const double> alone[] = {walk};
+  const double exact =
+      ifog::likelihood(*model, 1e-3 / 0.01, 1.0, ifog::LikelihoodRecord(alone), 0.01).log_likelihood();
   // The diffuse likelihood is that of the contrasts but for a constant, ln sqrt(n).
   EXPECT_NEAR(-cost, exact + 0.5 * std::log(n), 1e-3);
 }
