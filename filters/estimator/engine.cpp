@@ -128,10 +128,13 @@ void Engine::weigh(Step& s) noexcept {
   m.rest_factor = noise_.white() + rest_->measured().variance / (noise_.mean_known() * s.noise_scale);
   m.scale = noise_.each(&Noise::tested) * s.noise_scale;
   if (smooths_) m.scale *= noise_.each(&Noise::excess);
+  // The amplitude of a model's colour varies, such as that of a dither: slowly, and for a while.
+  if (!rest_->rate_alone()) {
+    m.scale *= to_lanes(health_.nis_mean).max(1.0).min(kOtherNoise);
+    m.louder = kOtherNoise;
+  }
   m.innovation = m.mask * (m.rate - rest_->measured().value);
   m.inverse = m.mask / m.scale;
-  // The amplitude of a model's colour varies, such as that of a dither.
-  if (!rest_->rate_alone()) m.louder = kOtherNoise;
   const Lanes covered = to_lanes(s.in.covered_s);
   m.covered_s = (covered > 0.0).select(covered, s.dt_s);
   m.surprise = m.innovation * m.innovation * m.inverse * (1.0 / m.rest_factor);
