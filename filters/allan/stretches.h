@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample time and missing samples from a capture's time column. An Allan variance across a gap would compare
+// Stretches of a record without missing samples. An Allan variance across a gap would compare
 // averages that are not adjacent, so a gap ends a stretch; AngleSum fills holes whose effect is negligible.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include "drivers/row_times/sample_clock.h"
 
 namespace ifog {
 
@@ -19,33 +21,6 @@ struct Stretch {
   }
   bool operator==(const Stretch&) const = default;
 };
-
-struct SampleClock {
-  double period_s = 0.0;        // mean of the steps without gaps
-  double worst_jitter_s = 0.0;  // largest difference between such a step and period_s
-  std::size_t gaps = 0;         // steps with missing samples
-  std::size_t missing = 0;      // samples
-  // standard deviation of the stamps in periods, from the steps' median distance from period_s
-  double scatter = 0.0;
-  // True if the stamps are too irregular to recognise single steps; then the sample's number gives its time
-  // better.
-  [[nodiscard]] bool scatters() const { return scatter >= 0.1; }
-  std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0
-};
-
-// Throws std::invalid_argument unless time_s is strictly increasing and has two samples or more. An even clock
-// with late stamps is assumed where their delay returns. Else the median step defines a gap, so up to half of the
-// steps may be gaps. Coarsely rounded stamps alternate between k and k + 1 ticks; so a step is a gap only if later
-// stamps stay late. Scattering stamps: filters/allan/scattered_stamps.h.
-[[nodiscard]] SampleClock sample_clock(std::span<const double> time_s);
-
-struct Hole {
-  std::size_t after = 0;  // the last sample before it
-  std::size_t lost = 0;
-};
-
-// In order of time.
-[[nodiscard]] std::vector<Hole> holes(std::span<const double> time_s, const SampleClock& clock);
 
 // Stretches without gap or NaN, in order. If time_s is empty only NaN divides them.
 [[nodiscard]] std::vector<Stretch> stretches(std::span<const double> time_s,

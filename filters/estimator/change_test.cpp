@@ -72,7 +72,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   // Effective number of innovations in the sum: its variance / R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
   // Correlated neighbours count once; the limit is the rarity of an outlier.
-  const Lanes alike = colour_of_sum(common.decay, keep), share = now.mask / alike;
+  const Lanes alike = colour_of_sum(now.decay, keep), share = now.mask / alike;
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
   expect(c, h, c.shrinks * c.sum.square() / (n * alike * common.second) - c.spread, now);
@@ -83,15 +83,12 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.tracker = keep * c.tracker + mine.min(kFarSquare);
 }
 
-std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& decay,
-                                            double rarity, double lag) noexcept {
+std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, double rarity,
+                                            double lag) noexcept {
   const Lanes capped = now.surprise.min(2.0 * rarity);
   const double most = std::sqrt(2.0 * rarity);
   const Common common{(now.innovation * now.inverse.sqrt()).max(-most).min(most),
-                      now.surprise.min(kFarSquare),
-                      second_.max(1.0),
-                      decay,
-                      2.0 * rarity,
+                      now.surprise.min(kFarSquare), second_.max(1.0), 2.0 * rarity,
                       logarithm(now.rest_factor)};
   age_ += 1.0;
   change_variance_.setZero();
@@ -113,7 +110,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   // Tails and colour let large innovations coincide. If all exceed the known noise, it is motion.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
   const Lanes tails = (fourth_ / (3.0 * (second_ / kOtherNoise).max(1.0).square())).max(1.0);
-  const Lanes colour = colour_of_sum(decay, 1.0);
+  const Lanes colour = colour_of_sum(now.decay, 1.0);
   const Lanes larger =
       (0.5 - 0.5 / kShakingVariance) * (now.surprise / (now.louder * colour)).min(common.cap);
   shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / colour) / tails).max(0.0);

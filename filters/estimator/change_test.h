@@ -23,10 +23,10 @@ class ChangeTest {
   static constexpr std::size_t kShaking = Trackers::kMost;
 
   // Returns the tracker that predicts the change, kShaking, or nullopt; to be called before
-  // Trackers::correct(). decay: Noise::decay() of each axis; rarity: Outliers::rarity(); lag: of the filter
+  // Trackers::correct(). rarity: Outliers::rarity(); lag: of the filter
   // at rest, samples.
-  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& decay,
-                                  double rarity, double lag) noexcept;
+  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, double rarity,
+                                  double lag) noexcept;
   // To be called when a manoeuvre is detected or the filter starts; keeps what is known of the noise.
   void begin() noexcept;
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
@@ -45,8 +45,8 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    // Innovations clipped and squared; their variance relative to R; Noise::decay().
-    Lanes clipped, squares, second, decay;
+    // Innovations clipped and squared; their variance relative to R.
+    Lanes clipped, squares, second;
     double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common) noexcept;

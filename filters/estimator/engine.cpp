@@ -132,6 +132,8 @@ void Engine::weigh(Step& s) noexcept {
   if (!rest_->rate_alone()) {
     m.scale *= to_lanes(health_.nis_mean).max(1.0).min(kOtherNoise);
     m.louder = kOtherNoise;
+  } else {
+    m.decay = noise_.each(&Noise::decay);
   }
   m.innovation = m.mask * (m.rate - rest_->measured().value);
   m.inverse = m.mask / m.scale;
@@ -195,8 +197,7 @@ void Engine::jump(Step& s) noexcept {
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.shortfall_at_rest();
-  std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, decay(), f.outliers.rarity(), f.lag());
+  std::optional<std::size_t> found = f.change.take(f.trackers, s.sample, f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && smooths_) found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) return begin_manoeuvre(s, *found);
@@ -294,10 +295,6 @@ void Engine::guard(Step& s) noexcept {
   publish_rest(s);
 }
 
-Lanes Engine::decay() const noexcept {
-  return rest_->rate_alone() ? noise_.each(&Noise::decay) : Lanes::Ones();
-}
-
 // Half of the variance is due to measurement noise (more if coloured: README.md), half due to the walk.
 void Engine::publish_rest(Step& s) noexcept {
   s.rate = rest_->rate().value;
@@ -305,7 +302,7 @@ void Engine::publish_rest(Step& s) noexcept {
   s.variance.setConstant(rest_->rate().variance);
   if (!settings_.follow_manoeuvres) return;
   const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
-  const Lanes colour = colour_of_sum(decay(), follow_.lag() / (1.0 + follow_.lag()));
+  const Lanes colour = colour_of_sum(s.sample.decay, follow_.lag() / (1.0 + follow_.lag()));
   s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * colour / rule);
   s.variance += follow_.change.change_variance() + noise_.each(&Noise::rounding);
 }

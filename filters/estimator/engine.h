@@ -115,7 +115,6 @@ class Engine {
   void learn(const Step& s) noexcept;
   void publish(const Step& s) noexcept;
   void refresh_lag() noexcept;
-  [[nodiscard]] Lanes decay() const noexcept;  // Noise::decay(); 1 if the state model has the colour
   [[nodiscard]] bool rests(const Step& s) const noexcept;
 
   FilterSettings settings_;

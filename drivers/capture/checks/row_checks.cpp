@@ -10,6 +10,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/row_times/row_times.h"
 #include "drivers/units/turn.h"
 
 namespace ifog {
@@ -58,16 +59,20 @@ void convert(RowBlock& rows, const std::vector<FileColumn>& columns) {
 // Needs all rows, to find out whether an angle stays within one turn.
 void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& notes,
               const std::string& path) {
+  if (all.size() < 2) return;
+  // Stamps that scatter, or in ticks as long as the samples are apart, would make some rates twice as large as others.
+  const SampleClock clock = sample_clock(all.time_s);
+  RowTimes times(all.time_s, clock);
+  std::vector<double> time_s;
+  for (const double stamp_s : all.time_s) time_s.push_back(times.next(stamp_s));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const FileColumn& column = columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.unit.ends_with("/sample")) {
-      // Time of an increment, independent of the rows' times.
-      const double period_s = median_step_s(all.time_s);
-      for (double& value : values) value /= period_s;
+      for (double& value : values) value /= clock.period_s;
     } else {
-      differentiate(values, all.time_s);
+      differentiate(values, time_s);
     }
     // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)

@@ -7,12 +7,6 @@
 
 namespace ifog {
 
-double median_value(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double median_step_s(const std::vector<double>& time_s) {
   if (time_s.size() < 2) return kMissing;
   std::vector<double> steps(time_s.size());

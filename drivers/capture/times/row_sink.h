@@ -12,14 +12,13 @@
 #include <vector>
 
 #include "drivers/capture/times/time_stamps.h"
+#include "drivers/row_times/median.h"
 
 namespace ifog {
 
 // Value of a column without data in a row.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Needs at least one value.
-[[nodiscard]] double median_value(std::vector<double> values);
 // Median step of times; kMissing without steps.
 [[nodiscard]] double median_step_s(const std::vector<double>& time_s);
 

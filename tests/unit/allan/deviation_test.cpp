@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/deviation.h"
+#include "drivers/row_times/row_times.h"
 #include "filters/allan/gapped_deviation.h"
-#include "filters/allan/row_times.h"
 #include "filters/allan/streaming.h"
 #include "filters/allan/theo1.h"
 #include "tests/unit/capture/read_capture.h"

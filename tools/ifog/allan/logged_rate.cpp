@@ -9,8 +9,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "drivers/row_times/row_times.h"
 #include "filters/allan/noise/curve_miss.h"
-#include "filters/allan/row_times.h"
 #include "filters/rest/cleaned_rate.h"
 #include "filters/rest/followed_channel.h"
 #include "filters/rest/value_faults.h"

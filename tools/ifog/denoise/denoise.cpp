@@ -21,8 +21,8 @@
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/row_times/sample_clock.h"
 #include "filters/model_file/kept_noise.h"
-#include "filters/series/median_step.h"
 #include "filters/series/samples.h"
 #include "filters/settings/filter_table.h"
 #include "filters/smoother/smoother.h"
@@ -140,7 +140,7 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
 void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
   constexpr double kAlike = 0.2;
   if (!(rate_hz > 0.0) || table.size() < 2) return;
-  const double own_hz = 1.0 / median_step(table.time_s);
+  const double own_hz = 1.0 / sample_clock(table.time_s).period_s;
   if (std::abs(rate_hz / own_hz - 1.0) > kAlike)
     warn("{}: {} is {:g} Hz, the capture's own times say {:.6g} Hz\n", options.capture,
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);

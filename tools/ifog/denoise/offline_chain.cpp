@@ -12,9 +12,8 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture.h"
-#include "filters/allan/row_times.h"
+#include "drivers/row_times/row_times.h"
 #include "filters/model_file/channel_names.h"
-#include "filters/series/median_step.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -50,13 +49,6 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
   return out;
 }
 
-// Rate from the median step, which gaps do not bias; from the mean if the stamps are coarse or scatter.
-double rate_of(std::span<const double> time_s, const SampleClock& clock) {
-  constexpr double kCoarse = 1e-4;
-  const double median = rounded_rate(median_step(time_s)), mean = rounded_rate(clock.period_s);
-  return clock.scatters() || std::abs(mean / median - 1.0) > kCoarse ? mean : median;
-}
-
 ChainSettings chain_settings_of(const LongTable& capture, const std::string& path, const CaptureShape& shape,
                                 const std::vector<std::size_t>& channels, const OfflineSettings& settings,
                                 const SampleClock& clock) {
@@ -64,8 +56,8 @@ ChainSettings chain_settings_of(const LongTable& capture, const std::string& pat
   out.facts.axes = static_cast<int>(shape.axes.size());
   if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
     throw refusal("{}: has fewer than 2 samples, expected more or --rate HZ", path);
-  out.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz
-                                                                    : rate_of(capture.time_s, clock);
+  out.facts.nominal_rate_hz =
+      settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz : rounded_rate(clock.period_s);
   out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
   out.axes = shape.axes;
   for (const std::size_t c : channels) {

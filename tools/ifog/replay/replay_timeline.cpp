@@ -11,8 +11,8 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
+#include "drivers/row_times/sample_clock.h"
 #include "drivers/timeline/timeline.h"
-#include "filters/series/median_step.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
@@ -120,7 +120,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
     throw refusal("{}: a capture in columns needs --driver NAME, whose frames its rows become", source.path);
   const LongCapture read(source.input.read_long_columns(file), source.path);
   const CaptureView& capture = read.view();
-  const double rate_hz = capture.size() > 1 ? sample_rate_hz(median_step(capture.time_s)) : 0.0;
+  const double rate_hz = capture.size() > 1 ? sample_rate_hz(sample_clock(capture.time_s).period_s) : 0.0;
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, rate_hz, source.axis);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/allan/row_times.h"
+#include "drivers/row_times/row_times.h"
 
 #include <cmath>
 #include <span>

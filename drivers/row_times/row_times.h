@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "filters/allan/stretches.h"
+#include "drivers/row_times/sample_clock.h"
 
 namespace ifog {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/allan/scattered_stamps.h"
+#include "drivers/row_times/scattered_stamps.h"
 
 #include <algorithm>
 #include <array>
