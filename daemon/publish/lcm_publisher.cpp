@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <lcm/lcm.h>
 
-#include <cerrno>
 #include <stdexcept>
 
 #include "daemon/publish/publisher.h"
@@ -23,13 +22,7 @@ class LcmPublisher final : public Publisher {
   LcmPublisher& operator=(const LcmPublisher&) = delete;
 
   bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
-    // Sending may be interrupted by the reader's alarm while it waits for socket space; then nothing was
-    // sent. (LCM returns no reason, but keeps errno.)
-    for (;;) {
-      errno = 0;
-      if (lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0) return true;
-      if (errno != EINTR) return false;
-    }
+    return lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0;
   }
 
  private:

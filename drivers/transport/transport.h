@@ -18,7 +18,6 @@
 
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/backlog.h"
-#include "drivers/transport/backoff.h"
 #include "drivers/transport/counter.h"
 #include "drivers/transport/notices.h"
 #include "drivers/transport/stoppable_wait.h"
@@ -122,7 +121,6 @@ class Transport {
 
  protected:
   using Wake = StoppableWait::Wake;
-  using Received = StoppableWait::Received;
 
   // (Re)opens the device and sends opening(). False: no answer until `until_ns` of CLOCK_MONOTONIC or stop();
   // the next call continues. Throws OpenError.
@@ -134,6 +132,7 @@ class Transport {
   virtual void count_losses() noexcept {}
   // True if receive() would return data at once.
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
+  [[nodiscard]] bool is_readable(int fd) noexcept;
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
   // The device disappeared: connect() will be tried again.
@@ -148,10 +147,15 @@ class Transport {
 
  private:
   bool regain(std::int64_t until_ns) noexcept;
+  void failed() noexcept;
   void enter(TransportState state, int reason) noexcept;
 
+  // Reopened at once, then at growing intervals, so that a returning device is used within a second.
+  static constexpr std::int64_t kFirstPause_ns = 10'000'000, kLongestPause_ns = 100'000'000;
   struct Link {
-    std::int64_t since_ns = 0;  // of CLOCK_MONOTONIC
+    std::int64_t since_ns = 0;    // open, of CLOCK_MONOTONIC
+    std::int64_t attempt_ns = 0;  // next one to open it, of the same clock
+    std::int64_t pause_ns = kFirstPause_ns;
     bool open = false, once = false;
     bool returning = false;  // the next delivery is the first since the device was reopened
   };
@@ -168,7 +172,6 @@ class Transport {
   std::string name_;
   std::vector<std::uint8_t> opening_;
   Notices notices_;
-  Backoff backoff_;
   Link link_;
   Backlog backlog_;
   // Relaxed: independent values. A reader may see a state before its reason, which is only for messages.

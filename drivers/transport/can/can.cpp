@@ -3,6 +3,7 @@
 #include "drivers/transport/clock.h"
 
 #include <linux/sock_diag.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -33,8 +34,7 @@ class CanTransport final : public Transport {
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   int receive_waiting() noexcept;
-  bool leaves_for(int error) noexcept;
-  int receive_batch(int flags) noexcept;
+  int receive_batch() noexcept;
   std::span<const ifog_can_frame> accept(std::size_t received, std::int64_t read_at) noexcept;
   void count_losses() noexcept override;
   void count_drops(std::uint32_t drops) noexcept;
@@ -42,7 +42,6 @@ class CanTransport final : public Transport {
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
-  bool blocks_ = false;
   std::size_t filled_ = kFramesAtOnce;  // number of messages_ to be prepared
   int leaving_ = 0;  // errno of the interface's disappearance; waiting frames are still read
   KernelStamps stamps_;
@@ -67,25 +66,15 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_drops(socket_.fd());
   ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
   ask_for_times(socket_.fd(), name(), warning);
-  blocks_ = StoppableWait::let_block(socket_.fd());
   return true;
 }
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
-  int n = 0;
-  if (leaving_ == 0) {
-    const Received got = waiting_.receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
-      return ssize_t{receive_batch(may_wait ? MSG_WAITFORONE : MSG_DONTWAIT)};
-    });
-    if (got.wake != Wake::ready) {
-      count_losses();
-      return {};
-    }
-    n = static_cast<int>(got.n);
-    if (n <= 0 && !leaves_for(got.error)) return {};
+  if (leaving_ == 0 && waiting_.wait(socket_.fd(), POLLIN, until_ns) != Wake::ready) {
+    count_losses();
+    return {};
   }
-  if (n <= 0) n = receive_waiting();
-  if (n > 0) {
+  if (const int n = receive_waiting(); n > 0) {
     Delivery delivery;
     delivery.read_ns = arrival_clock_ns();
     delivery.frames = accept(static_cast<std::size_t>(n), delivery.read_ns);
@@ -103,27 +92,21 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 int CanTransport::receive_waiting() noexcept {
   constexpr int kErrors = 4;  // more than one socket can report
   for (int errors = 0; errors < kErrors; ++errors) {
-    const int n = receive_batch(MSG_DONTWAIT);
+    const int n = receive_batch();
     if (n > 0) return n;
-    if (!leaves_for(n < 0 ? errno : 0)) return 0;
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) return 0;
+    leaving_ = n < 0 ? errno : ENODEV;
   }
   return 0;
 }
 
-// False: there are only no data.
-bool CanTransport::leaves_for(int error) noexcept {
-  if (error == EINTR || error == EAGAIN) return false;
-  leaving_ = error != 0 ? error : ENODEV;
-  return true;
-}
-
-int CanTransport::receive_batch(int flags) noexcept {
+int CanTransport::receive_batch() noexcept {
   // Resets the messages that the previous call used.
   for (std::size_t i = 0; i < filled_; ++i) {
     messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
     messages_[i].msg_hdr.msg_flags = 0;
   }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, flags, nullptr);
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, MSG_DONTWAIT, nullptr);
   // A failed message may be partly filled.
   filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;

@@ -68,9 +68,7 @@ class FileTransport : public Transport {
   Pace pace_;
   int read_error_ = 0;
   bool at_end_ = false;
-  // Data have been written since it was opened. Until then it is polled, because reading a FIFO without a
-  // writer looks like its end.
-  bool written_ = false;
+  bool written_ = false;  // data have been written since it was opened
 };
 
 // opening() is not sent to a recording.
@@ -111,21 +109,11 @@ void FileTransport::finish() noexcept {
 
 bool FileTransport::fill(std::int64_t until_ns) noexcept {
   while (!at_end_) {
-    ByteFile::Fill filled = ByteFile::Fill::none;
-    const auto read = [&](bool) -> ssize_t {
-      filled = file_.fill();
-      return filled == ByteFile::Fill::more ? 1 : filled == ByteFile::Fill::end ? 0 : -1;
-    };
-    int error = 0;
     if (file_.poll_fd() >= 0) {
-      const Received got = waiting_.receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
-      if (got.wake != Wake::ready) return false;
-      error = got.error;
+      if (waiting_.wait(file_.poll_fd(), POLLIN, until_ns) != Wake::ready) return false;
       written_ = true;
-    } else if (read(true) < 0) {
-      error = errno;
     }
-    switch (filled) {
+    switch (file_.fill()) {
       case ByteFile::Fill::more:
         return true;
       case ByteFile::Fill::none:
@@ -135,7 +123,7 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
         at_end_ = true;
         break;
       case ByteFile::Fill::error:
-        read_error_ = error;
+        read_error_ = errno;
         at_end_ = true;
         break;
       case ByteFile::Fill::end:
@@ -150,8 +138,7 @@ bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexc
   if (!pace_.started()) pace_.start(recorded_ns, monotonic_ns());
   const std::int64_t due = pace_.due_ns(recorded_ns);
   if (due <= monotonic_ns()) return true;
-  short happened = 0;
-  return waiting_.wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
+  return waiting_.wait(-1, 0, std::min(due, until_ns)) != Wake::stopped && due <= until_ns;
 }
 
 class BytesFile final : public FileTransport {

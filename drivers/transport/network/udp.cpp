@@ -88,13 +88,12 @@ class UdpTransport final : public Transport {
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   [[nodiscard]] bool more_waits() noexcept override {
-    pollfd socket{socket_.fd(), POLLIN, 0};
-    return batch_.next < batch_.count || ::poll(&socket, 1, 0) > 0;
+    return batch_.next < batch_.count || is_readable(socket_.fd());
   }
   void join(const IpSocket& socket) const;
   void send_opening(const IpSocket& socket) const;
   void look_at_interface() noexcept;
-  int receive_batch(bool may_wait) noexcept;
+  int receive_batch() noexcept;
   void take(std::size_t received) noexcept;
   void give_up(int error) noexcept;
   Delivery next() noexcept;
@@ -109,7 +108,6 @@ class UdpTransport final : public Transport {
   std::uint16_t sends_from_ = 0;  // the host's sending port; 0: none yet
   std::int64_t sent_ns_ = 0;      // time of its last datagram
   KernelStamps stamps_;
-  bool blocks_ = false;
   Batch batch_;
 };
 
@@ -155,7 +153,6 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_times(fresh.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   send_opening(fresh);
-  blocks_ = StoppableWait::let_block(fresh.fd());
   socket_ = std::move(fresh);
   return true;
 }
@@ -192,14 +189,13 @@ void UdpTransport::send_opening(const IpSocket& socket) const {
 Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
   if (const Delivery waiting = next(); !waiting.empty()) return waiting;
   batch_.count = batch_.next = 0;
-  const Received got = waiting_.receive_by(
-      socket_.fd(), blocks_, until_ns, [this](bool may_wait) { return ssize_t{receive_batch(may_wait)}; });
-  if (got.wake == Wake::timeout) look_at_interface();
-  if (got.wake != Wake::ready) return {};
-  if (got.n > 0)
-    take(static_cast<std::size_t>(got.n));
+  const Wake wake = waiting_.wait(socket_.fd(), POLLIN, until_ns);
+  if (wake == Wake::timeout) look_at_interface();
+  if (wake != Wake::ready) return {};
+  if (const int n = receive_batch(); n > 0)
+    take(static_cast<std::size_t>(n));
   else
-    give_up(got.n < 0 ? got.error : EAGAIN);
+    give_up(n < 0 ? errno : EAGAIN);
   return next();
 }
 
@@ -214,15 +210,14 @@ void UdpTransport::look_at_interface() noexcept {
   lost(ENODEV);
 }
 
-int UdpTransport::receive_batch(bool may_wait) noexcept {
+int UdpTransport::receive_batch() noexcept {
   // Resets the messages that the previous call used.
   for (std::size_t i = 0; i < batch_.filled; ++i) {
     batch_.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     batch_.messages[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
     batch_.messages[i].msg_hdr.msg_flags = 0;
   }
-  const int n = recvmmsg(socket_.fd(), batch_.messages.data(), kDatagramsAtOnce,
-                         may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
+  const int n = recvmmsg(socket_.fd(), batch_.messages.data(), kDatagramsAtOnce, MSG_DONTWAIT, nullptr);
   // A failed message may be partly filled.
   batch_.filled = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;

@@ -2,19 +2,12 @@
 // What several transports' tests read with. A wait of kForever is over only when what is waited for has come.
 #pragma once
 
-#include "drivers/transport/file/file.h"
 #include "drivers/transport/transport.h"
 #include "tests/unit/test.h"
 
 namespace ifog {
 
 inline constexpr auto kForever = std::chrono::seconds(60);
-
-inline FileSettings of_file(const std::string& path) {
-  FileSettings settings;
-  settings.path = path;
-  return settings;
-}
 
 // At least so many bytes; `restarted` becomes true where a delivery says so.
 inline std::string read_some(Transport& transport, std::size_t n, bool* restarted = nullptr) {

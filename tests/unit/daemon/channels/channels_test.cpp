@@ -80,8 +80,7 @@ class FakeBus final : public Transport {
     Delivery out;
     counters_.kernel_drops.add(std::exchange(drops_, 0));
     out.frames = std::exchange(given_, true) ? std::span<const ifog_can_frame>() : frames_;
-    short happened = 0;
-    if (out.empty()) waiting_.wait(-1, 0, until_ns, happened);
+    if (out.empty()) waiting_.wait(-1, 0, until_ns);
     return out;
   }
 
