@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <span>
@@ -20,7 +21,6 @@
 #include "daemon/config/version_text.h"
 #include "daemon/housekeeping/housekeeping.h"
 #include "daemon/housekeeping/log.h"
-#include "daemon/housekeeping/signals.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
@@ -28,6 +28,14 @@
 #include "drivers/system/shell_word.h"
 
 namespace {
+
+// For this thread and its later ones.
+void block(std::initializer_list<int> signals) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int each : signals) sigaddset(&set, each);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
 
 // Opens closed standard streams, so that the log cannot go into a gyro's serial line; and ignores SIGPIPE, so
 // that the log's reader cannot end the daemon.
@@ -73,7 +81,7 @@ int said(int code) {
 
 int main(int argc, char** argv) {
   // First of all: a reload requested while the configuration is read happens after it, an end at once.
-  ifog::block_reload();
+  block({SIGHUP});
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version", ifog::version_text("ifogd"));
@@ -103,7 +111,7 @@ int main(int argc, char** argv) {
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return said(0);
     }
-    ifog::block_signals();
+    block({SIGTERM, SIGINT, SIGHUP});
     return housekeeping.run();
   } catch (const ifog::ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());

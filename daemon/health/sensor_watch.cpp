@@ -28,29 +28,16 @@ double blocks_between_alarms(std::size_t axes, double block_s, double share) {
 
 }  // namespace
 
-SensorWatch::Axis::Axis(double usual, double colour, double step)
-    : loud(usual), odd_neighbours(usual), follows(colour), steps(step) {}
-
 SensorWatch::SensorWatch(std::size_t axes, double sample_rate_hz)
     : block_samples_(std::max(kFewestSamples, std::round(kBlock_s * sample_rate_hz))),
-      period_s_(1.0 / sample_rate_hz) {
-  const double block_s = block_samples_ * period_s_;
-  const double cusum = std::log(blocks_between_alarms(axes, block_s, (1.0 - kForStep) / kCusums));
-  const double step = blocks_between_alarms(axes, block_s, kForStep);
-  axes_.assign(axes, Axis(cusum, cusum, step));
-}
+      period_s_(1.0 / sample_rate_hz),
+      fresh_(std::log(blocks_between_alarms(axes, block_samples_ * period_s_, (1.0 - kForStep) / kCusums)),
+             blocks_between_alarms(axes, block_samples_ * period_s_, kForStep)),
+      axes_(axes, fresh_) {}
 
 void SensorWatch::renew() {
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    Axis& axis = axes_[a];
-    axis.blocks = axis.square = axis.correlation = axis.skipped = axis.turned = axis.bias_for = 0.0;
-    axis.at_block = before_.axis[a];
-    axis.loud.restart();
-    axis.odd_neighbours.restart();
-    axis.follows.restart();
-    axis.steps.forget();
-    axis.level = LevelNoise();
-  }
+  axes_.assign(axes_.size(), fresh_);
+  for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].at_block = before_.axis[a];
   range_ = false;
   samples_ = seen_;
   out_of_range_ = seen_out_of_range_;
@@ -83,7 +70,7 @@ void SensorWatch::follow_motion(Axis& axis, const RestSums::Axis& now, const Res
   axis.turned += (now.moved_rate - before.moved_rate - moved * level) * period_s_;
   if (std::abs(axis.turned) <= kTurned) return;
   axis.level.forget_level();
-  axis.follows.break_off();
+  axis.last_innovation.reset();
   axis.steps.restart();
   axis.turned = 0.0;
 }
@@ -113,8 +100,8 @@ bool SensorWatch::test_noise(Axis& axis, double square, double correlation, doub
     if (loud) axis.louder += (louder - axis.louder) * (axis.louder == 0.0 ? 1.0 : kLatest);
     const bool strange =
         std::abs(correlation - axis.correlation) > std::max(kOddCorrelation, kOddErrors / std::sqrt(pairs));
-    axis.loud.take(loud);
-    axis.odd_neighbours.take(strange);
+    axis.loud.add(usual_log_ratio(loud));
+    axis.odd_neighbours.add(usual_log_ratio(strange));
     odd = loud || strange;
   }
   // Unusual blocks are not learned.
@@ -133,12 +120,13 @@ void SensorWatch::test_level(Axis& axis, double mean) {
   // Also while learning, because the variance of sums is learned too.
   const bool stepped = axis.steps.take(innovation);
   if (axis.level.blocks() < kLearned) return;
-  axis.follows.take(innovation.value);
+  if (axis.last_innovation) axis.follows.add(colour_log_ratio(*axis.last_innovation, innovation.value));
+  axis.last_innovation = innovation.value;
   if (!stepped) return;
   step_radps_ = axis.steps.step();
   axis.bias_for = kTellStep;
   axis.level.forget_level();
-  axis.follows.break_off();
+  axis.last_innovation.reset();
 }
 
 std::int32_t SensorWatch::noticed() const {

@@ -64,13 +64,13 @@ class SensorWatch {
 
  private:
   struct Axis {
-    Axis(double usual, double colour, double step);
+    Axis(double cusum, double step) : loud(cusum), odd_neighbours(cusum), follows(cusum), steps(step) {}
     RestSums::Axis at_block{};               // sums at the start of the present block
     double blocks = 0.0;                     // learned
     double square = 0.0, correlation = 0.0;  // means over them
     double louder = 0.0;  // mean square / former value, of the latest noisy blocks; 0: none recently
-    UsualCusum loud, odd_neighbours;
-    ColourCusum follows;
+    Cusum loud, odd_neighbours, follows;
+    std::optional<double> last_innovation;  // of the block before, with variance 1
     StepTest steps;
     LevelNoise level;
     double skipped = 0.0;   // blocks since the last tested one
@@ -84,6 +84,7 @@ class SensorWatch {
   void follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const;
 
   double block_samples_, period_s_;
+  Axis fresh_;  // without any knowledge
   std::vector<Axis> axes_;
   RestSums before_{};
   std::uint64_t samples_ = 0, out_of_range_ = 0;  // at the start of the present ten minutes

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "daemon/channels/can_channel.h"
-#include "daemon/housekeeping/signals.h"
 #include "daemon/realtime/realtime.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
@@ -33,6 +32,20 @@ std::vector<std::string> axis_names(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
   return out;
+}
+
+// Next signal, or 0 at `deadline_ns` of the monotonic clock. SIGHUP never hides an end.
+int wait_for_signal(std::int64_t deadline_ns) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  const timespec none{};
+  if (const int end = sigtimedwait(&signals, nullptr, &none); end > 0) return end;
+  sigaddset(&signals, SIGHUP);
+  const std::int64_t left = std::max<std::int64_t>(0, deadline_ns - monotonic_ns());
+  const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+  return std::max(0, sigtimedwait(&signals, nullptr, &timeout));
 }
 
 }  // namespace
@@ -144,7 +157,9 @@ void Housekeeping::start_all() {
 }
 
 void Housekeeping::claim(const Sensor& sensor, const std::string& channel) {
-  if (claims_.emplace_back(config_.lcm_url, channel).in_use())
+  if (std::optional<Fd> claimed = claim_channel(config_.lcm_url, channel))
+    claims_.push_back(std::move(*claimed));
+  else
     sensor.log->warn(
         "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
         "a name or a channel of its own for each",

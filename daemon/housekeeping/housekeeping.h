@@ -15,7 +15,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
-#include "daemon/publish/channel_claim.h"
+#include "daemon/publish/publisher.h"
 #include "daemon/state/running_mark.h"
 
 namespace ifog {
@@ -93,7 +93,7 @@ class Housekeeping {
   Config config_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<ChannelClaim> claims_;  // on the sensors' LCM channels
+  std::vector<Fd> claims_;  // on the sensors' LCM channels
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   RunningMark mark_;

@@ -12,7 +12,6 @@
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/reader.h"
 #include "daemon/realtime/realtime.h"
-#include "daemon/realtime/thread_watch.h"
 
 namespace ifog {
 

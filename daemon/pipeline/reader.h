@@ -11,7 +11,7 @@
 
 #include "daemon/channels/channel_table.h"
 #include "daemon/health/books.h"
-#include "daemon/pipeline/event_queue.h"
+#include "daemon/pipeline/event.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/parts_exchange.h"

@@ -3,12 +3,11 @@
 
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/timerfd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <ctime>
 #include <stdexcept>
 #include <system_error>
 
@@ -16,9 +15,11 @@
 
 namespace ifog {
 
-StoppableWait::StoppableWait() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (event_ < 0)
-    throw std::runtime_error("cannot make an eventfd: " + std::generic_category().message(errno));
+StoppableWait::StoppableWait()
+    : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      alarm_(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)) {
+  if (event_ < 0 || alarm_ < 0)
+    throw std::runtime_error("cannot make an eventfd or timerfd: " + std::generic_category().message(errno));
 }
 
 void StoppableWait::stop() noexcept {
@@ -31,15 +32,22 @@ void StoppableWait::stop() noexcept {
 
 StoppableWait::Wake StoppableWait::wait(int fd, short events, std::int64_t until_ns,
                                         short* happened) noexcept {
+  bool is_over = false;
   for (;;) {
-    std::array<pollfd, 2> fds{{{event_, POLLIN, 0}, {fd, events, 0}}};
-    const std::int64_t left = std::max<std::int64_t>(0, until_ns - monotonic_ns());
-    const timespec span{left / 1'000'000'000, left % 1'000'000'000};
-    const int n = ppoll(fds.data(), fds.size(), &span, nullptr);
+    if (alarm_ns_ > until_ns) {
+      is_over = until_ns <= monotonic_ns();
+      const itimerspec when{{}, {until_ns / 1'000'000'000, until_ns % 1'000'000'000}};
+      if (!is_over && timerfd_settime(alarm_, TFD_TIMER_ABSTIME, &when, nullptr) == 0) alarm_ns_ = until_ns;
+    }
+    std::array<pollfd, 3> fds{{{event_, POLLIN, 0}, {fd, events, 0}, {alarm_, POLLIN, 0}}};
+    const int n = poll(fds.data(), fds.size(), is_over ? 0 : -1);
     if (stopped() || (n > 0 && fds[0].revents != 0)) return Wake::stopped;
-    if (happened != nullptr) *happened = fds[1].revents;
-    if (n >= 0) return n == 0 ? Wake::timeout : Wake::ready;
-    // Interrupted by a signal: waits for the remaining time.
+    if (n > 0 && fds[1].revents != 0) {
+      if (happened != nullptr) *happened = fds[1].revents;
+      return Wake::ready;
+    }
+    if (is_over) return Wake::timeout;
+    if (n > 0) alarm_ns_ = INT64_MAX;  // it has rung, for this deadline or an earlier one
   }
 }
 

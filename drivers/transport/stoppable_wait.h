@@ -11,7 +11,7 @@ namespace ifog {
 
 class StoppableWait {
  public:
-  // Throws std::runtime_error if no eventfd is available.
+  // Throws std::runtime_error if no descriptor is available.
   StoppableWait();
 
   // Ends the present wait and all later ones.
@@ -25,6 +25,10 @@ class StoppableWait {
 
  private:
   Fd event_;  // set by stop() and never read, so all later waits return at once
+  // Ends a wait at alarm_ns_. A deadline of poll() itself is a timer that every read sets anew, which costs more
+  // than the read; with steady traffic this one is set once per deadline.
+  Fd alarm_;
+  std::int64_t alarm_ns_ = INT64_MAX;  // not set
   // Waits are ended by the event, not by this flag.
   std::atomic<bool> stopped_{false};
 };

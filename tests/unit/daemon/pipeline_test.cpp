@@ -5,7 +5,7 @@
 
 #include "daemon/pipeline/assemble.h"
 #include "daemon/pipeline/pipeline.h"
-#include "daemon/publish/inertial_encoder.h"
+#include "daemon/publish/encoders.h"
 #include "tests/unit/daemon/rig.h"
 #include "tests/unit/test.h"
 

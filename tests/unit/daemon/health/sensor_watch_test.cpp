@@ -206,18 +206,21 @@ TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
   const double threshold = std::log(1000.0);
   const double follows = mean_time_to_alarm(200, [&](unsigned seed) {
     test::Noise normal(seed);
-    ColourCusum test(threshold);
-    double n = 0.0;
-    while (!test.alarmed()) test.take(normal()), n += 1.0;
+    Cusum test(threshold);
+    double n = 0.0, last = normal();
+    for (; !test.alarmed(); n += 1.0) {
+      const double value = normal();
+      test.add(colour_log_ratio(std::exchange(last, value), value));
+    }
     return n;
   });
   EXPECT_GT(follows, 1000.0);
   const double usual = mean_time_to_alarm(200, [&](unsigned seed) {
     std::mt19937_64 random(seed);
     std::bernoulli_distribution odd(0.01);
-    UsualCusum test(threshold);
+    Cusum test(threshold);
     double n = 0.0;
-    while (!test.alarmed()) test.take(odd(random)), n += 1.0;
+    for (; !test.alarmed(); n += 1.0) test.add(usual_log_ratio(odd(random)));
     return n;
   });
   EXPECT_GT(usual, 1000.0);
