@@ -78,11 +78,12 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
       }
       StatusReport report(sensor.name, parts.channels, axis_names(description),
                           parts.pipeline->plan().facts.nominal_rate_hz);
+      ChannelWatch watch(sensor, parts.channels);
       sensors_.push_back(std::make_unique<Sensor>(Sensor{.config = sensor,
                                                          .parts = std::move(parts),
                                                          .report = std::move(report),
                                                          .log = make_log(sensor.name),
-                                                         .channels = ChannelWatch(sensor)}));
+                                                         .channels = std::move(watch)}));
       for (const std::string& absent : sensors_.back()->channels.absent())
         sensors_.back()->log->warn("{}", absent);
       for (const std::string& remark : sensors_.back()->parts.remarks)

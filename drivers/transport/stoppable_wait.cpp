@@ -51,4 +51,6 @@ StoppableWait::Wake StoppableWait::wait(int fd, short events, std::int64_t until
   }
 }
 
+bool StoppableWait::is_readable(int fd) noexcept { return wait(fd, POLLIN, 0) == Wake::ready; }
+
 }  // namespace ifog

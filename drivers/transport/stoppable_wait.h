@@ -22,6 +22,8 @@ class StoppableWait {
   // Waits for `events` on fd (only for time and stop() if fd is −1), until `until_ns` of CLOCK_MONOTONIC.
   // `happened`, unless null, gets poll's result.
   Wake wait(int fd, short events, std::int64_t until_ns, short* happened = nullptr) noexcept;
+  // True if data wait there now, unless stopped.
+  [[nodiscard]] bool is_readable(int fd) noexcept;
 
  private:
   Fd event_;  // set by stop() and never read, so all later waits return at once

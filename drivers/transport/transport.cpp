@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/transport.h"
 
-#include <poll.h>
-
 #include <algorithm>
 #include <system_error>
 #include <utility>
@@ -102,8 +100,6 @@ void Transport::failed() noexcept {
   link_.attempt_ns = monotonic_ns() + link_.pause_ns;
   link_.pause_ns = std::min(2 * link_.pause_ns, kLongestPause_ns);
 }
-
-bool Transport::is_readable(int fd) noexcept { return waiting_.wait(fd, POLLIN, 0) == Wake::ready; }
 
 void Transport::left() noexcept {
   link_.returning = true;

@@ -132,7 +132,6 @@ class Transport {
   virtual void count_losses() noexcept {}
   // True if receive() would return data at once.
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
-  [[nodiscard]] bool is_readable(int fd) noexcept;
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
   // The device disappeared: connect() will be tried again.

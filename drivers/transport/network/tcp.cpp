@@ -38,7 +38,7 @@ class TcpTransport final : public Transport {
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
-  [[nodiscard]] bool more_waits() noexcept override { return is_readable(socket_.fd()); }
+  [[nodiscard]] bool more_waits() noexcept override { return waiting_.is_readable(socket_.fd()); }
   void begin();
   void check_answer();
   void send_opening();

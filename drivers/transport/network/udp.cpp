@@ -88,7 +88,7 @@ class UdpTransport final : public Transport {
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   [[nodiscard]] bool more_waits() noexcept override {
-    return batch_.next < batch_.count || is_readable(socket_.fd());
+    return batch_.next < batch_.count || waiting_.is_readable(socket_.fd());
   }
   void join(const IpSocket& socket) const;
   void send_opening(const IpSocket& socket) const;

@@ -31,7 +31,7 @@ class SerialTransport final : public Transport {
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
-  [[nodiscard]] bool more_waits() noexcept override { return is_readable(port_ ? port_->fd() : -1); }
+  [[nodiscard]] bool more_waits() noexcept override { return waiting_.is_readable(port_ ? port_->fd() : -1); }
   void send(std::span<const std::uint8_t> rest);
   bool set_up(std::int64_t until_ns);
   [[noreturn]] void refuse_answer();

@@ -5,6 +5,7 @@
 
 #include "daemon/channels/can_channel.h"
 #include "daemon/channels/channel_sources.h"
+#include "daemon/channels/channel_watch.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"
 #include "tests/unit/test.h"
