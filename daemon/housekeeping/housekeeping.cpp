@@ -204,7 +204,7 @@ void Housekeeping::publish(Sensor& sensor) {
 void Housekeeping::count_idle(Sensor& sensor) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   const char* const starved = pipeline.starved();
-  const std::uint64_t turns = pipeline.reader().counters().turns.value();
+  const std::uint64_t turns = sensor.snapshot.reader.turns;
   const bool filter_came = sensor.answered || pipeline.ended();
   const bool reader_came = turns != sensor.reader_turns || pipeline.ended();
   sensor.reader_turns = turns;
@@ -287,7 +287,7 @@ void Housekeeping::stop_all() {
           recorder->entries_unwritten());
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
-    if (const auto beyond = sensor->parts.pipeline->reader().counters().values_beyond.value(); beyond > 0)
+    if (const auto beyond = sensor->snapshot.reader.driver.values_beyond; beyond > 0)
       sensor->log->info("{} values beyond the range that the file states: kept", beyond);
   }
 }

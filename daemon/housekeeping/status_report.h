@@ -56,7 +56,7 @@ class StatusReport {
 
   // Updates from the present counters and the filter's last snapshot with its accounts; interval_s: since the
   // last call.
-  const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
+  const ifog::status_t& update(const Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
   // The same for the flight recorder, before update().
   void update(Recorder& recorder);
   // Fault counters that changed in the last update(): "frames_crc +3, sequence_gaps +1", or "".
@@ -82,26 +82,22 @@ class StatusReport {
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
  private:
-  void take_books(const FilterSnapshot& snapshot);
-  void take_line(const TransportCounters& line);
-  void take_counters(const ReaderCounters& reader, const FilterCounters& filter);
+  void take_books(const ReaderBooks& read, const FilterBooks& filtered);
   void take_health(const FilterSnapshot& snapshot);
-  void look_for_samples(const ReaderCounters& reader);
-  [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
+  void look_for_samples(const ReaderBooks& read);
+  [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline, const ReaderBooks& read) const;
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
-  [[nodiscard]] std::string fault_of_samples();
+  [[nodiscard]] std::string fault_of_samples(bool mixed);
 
   ifog::status_t before_, now_;
   SensorWatch watch_;
   // As of the last update().
   struct Samples {
-    std::uint64_t decoded = 0, accepted = 0;
-    std::uint32_t axes_seen = 0;
+    std::uint64_t axes_seen = 0;
     bool news = false;                           // there were new ones
     int seconds = 0;                             // number of updates with new ones
     std::int64_t first_look_ns = 0;              // monotonic time of the first update
     std::int64_t last_ns = 0;                    // monotonic time of the last update with new ones
-    bool mixed = false;                          // frames of two devices arrive, and none is used
     bool frozen = false, frozen_before = false;  // all samples repeat earlier ones
   } samples_;
   std::vector<std::string> axes_;

@@ -44,7 +44,7 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
     rig.transport->stays_open_ = true;
     rig.transport->stray_ = rubbish;  // long ago, and not what is wrong now
     rig.pipeline->start();
-    while (rig.pipeline->reader().books().bytes_read < 50 * kFrame) std::this_thread::sleep_for(1ms);
+    while (rig.pipeline->reader().books().line.bytes < 50 * kFrame) std::this_thread::sleep_for(1ms);
     StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
     std::string fault;
     for (int second = 0; second < 8; ++second) {
@@ -102,11 +102,11 @@ TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
   rig.transport->allowed_ = 100 * kFrame;
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
-  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().bytes_read < 100 * kFrame)
+  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().line.bytes < 100 * kFrame)
     std::this_thread::sleep_for(1ms);
   const FilterSnapshot snapshot = rig.snapshot();
   rig.transport->allowed_ = ~std::size_t{0};
-  while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
+  while (rig.pipeline->reader().books().counts.samples < 1000) std::this_thread::sleep_for(1ms);
   StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const status_t& status = report.update(*rig.pipeline, snapshot, 1.0);
   EXPECT_EQ(status.samples_waiting, 0);

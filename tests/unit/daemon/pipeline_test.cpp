@@ -37,7 +37,7 @@ TEST(Pipeline, EverySampleIsPublishedInOrderWithTheSameBitsInTwoRuns) {
     ASSERT_EQ(a[i].angle, b[i].angle);
   }
   EXPECT_NEAR(a.back().angle[2], sent_angle(kCount), 1e-14);
-  EXPECT_EQ(one.pipeline->reader().books().frames_good, static_cast<std::uint64_t>(kCount));
+  EXPECT_EQ(one.pipeline->reader().books().driver.frames_good, static_cast<std::uint64_t>(kCount));
 }
 
 // What LCM did not take is in the next message: who integrates has every increment once, and `dt` is the time
@@ -150,7 +150,7 @@ TEST(Pipeline, DamagedFramesAreCountedAndTheGapIsFlagged) {
   EXPECT_NE(messages[100].flags & rate_t::FLAG_GAP, 0);
   EXPECT_NEAR(messages[100].dt, 3e-3, 1e-15);
   EXPECT_NEAR(messages[100].covered[0], 1e-3, 1e-15);
-  EXPECT_EQ(rig.pipeline->reader().counters().missing.value(), 2U);
+  EXPECT_EQ(rig.pipeline->reader().books().counts.missing, 2U);
   Event event;
   ASSERT_TRUE(rig.pipeline->take_event(event));
   EXPECT_EQ(event.kind, EventKind::gap);

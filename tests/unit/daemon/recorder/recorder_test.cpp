@@ -35,9 +35,9 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   rig.pipeline->start();
   const auto give = [&](std::size_t upto) {
     rig.transport->allowed_ = upto * kFrame;
-    const auto turns = [&] { return rig.pipeline->reader().counters().turns.value(); };
+    const auto turns = [&] { return rig.pipeline->reader().books().turns; };
     std::uint64_t before = turns();
-    while (rig.pipeline->reader().books().bytes_read < upto * kFrame) {
+    while (rig.pipeline->reader().books().line.bytes < upto * kFrame) {
       std::this_thread::sleep_for(1ms);
       before = turns();
     }
