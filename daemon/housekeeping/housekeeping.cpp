@@ -132,12 +132,11 @@ bool Housekeeping::open_all() {
 void Housekeeping::start_all() {
   for (const auto& sensor : sensors_) {
     for (const std::string& effect : sensor->parts.left_out) sensor->log->warn("not corrected: {}", effect);
-    if (const NoiseMemory& noise = sensor->parts.noise; !noise.remark().empty())
-      sensor->log->log(noise.good() ? spdlog::level::info : spdlog::level::warn, "{}", noise.remark());
+    const NoiseMemory& noise = sensor->parts.noise;
+    tell(*sensor, noise.good() ? spdlog::level::info : spdlog::level::warn, noise.remark());
     try {
       if (sensor->parts.recorder != nullptr) sensor->parts.recorder->start();
-      if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
-        sensor->log->warn("{}", missed);
+      tell(*sensor, spdlog::level::warn, sensor->parts.pipeline->start());
     } catch (const std::system_error& error) {
       throw std::runtime_error(
           "sensor \"" + printable(sensor->config.name) +
@@ -167,18 +166,21 @@ void Housekeeping::claim(const Sensor& sensor, const std::string& channel) {
         channel);
 }
 
+void Housekeeping::tell(const Sensor& sensor, spdlog::level::level_enum level, const std::string& words) {
+  if (!words.empty()) sensor.log->log(level, "{}", words);
+}
+
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
   if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
   }
-  if (const std::string answers = sensor.parts.pipeline->take_transport_answers(); !answers.empty())
-    sensor.log->info("{}", answers);
+  tell(sensor, spdlog::level::info, sensor.parts.pipeline->take_transport_answers());
   if (sensor.parts.recorder != nullptr) {
     bool good = false;
-    if (const std::string message = sensor.parts.recorder->take_message(good); !message.empty())
-      sensor.log->log(good ? spdlog::level::info : spdlog::level::warn, "{}", message);
+    const std::string message = sensor.parts.recorder->take_message(good);
+    tell(sensor, good ? spdlog::level::info : spdlog::level::warn, message);
   }
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
@@ -244,24 +246,22 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   }
   if (!fault_worded) sensor.log->warn("{}", message.fault);
   sensor.fault = message.fault;
-  if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  tell(sensor, spdlog::level::warn, sensor.report.moved());
   for (const ChannelWatch::News& news : sensor.channels.look(message, *sensor.parts.outside))
     sensor.log->log(news.good ? spdlog::level::info : spdlog::level::warn, "{}", news.words);
-  if (const std::string wrong = sensor.report.wrong_rate();
-      !wrong.empty() && !pipeline.reader().transport().holds_back())
-    sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
-  if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
-  if (const std::string frozen = sensor.report.newly_frozen(); !frozen.empty())
-    sensor.log->warn("{}", frozen);
-  if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
+  if (!pipeline.reader().transport().holds_back())
+    tell(sensor, spdlog::level::warn, sensor.report.wrong_rate());
+  tell(sensor, spdlog::level::info, sensor.report.unseen_axes());
+  tell(sensor, spdlog::level::warn, sensor.report.newly_frozen());
+  tell(sensor, spdlog::level::warn, sensor.report.newly_noticed());
   publish(sensor);
   keep_noise(sensor, false);
 }
 
 void Housekeeping::keep_noise(Sensor& sensor, bool at_once) {
   if (!sensor.snapshot.learned) return;
-  const std::string complaint = sensor.parts.noise.keep(*sensor.snapshot.learned, monotonic_ns(), at_once);
-  if (!complaint.empty()) sensor.log->warn("{}", complaint);
+  tell(sensor, spdlog::level::warn,
+       sensor.parts.noise.keep(*sensor.snapshot.learned, monotonic_ns(), at_once));
 }
 
 const char* Housekeeping::stuck_thread(const Sensor& sensor) {
@@ -284,7 +284,7 @@ void Housekeeping::stop_all() {
       sensor->log->info(
           "recorder: {} deliveries, {} lost, {} bytes written, {} entries that the disk did not take",
           message.record_deliveries, message.record_lost, message.record_file_bytes,
-          recorder->entries_unwritten());
+          recorder->counts().entries_unwritten);
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
     if (const auto beyond = sensor->snapshot.reader.driver.values_beyond; beyond > 0)

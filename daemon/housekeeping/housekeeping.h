@@ -69,6 +69,8 @@ class Housekeeping {
   void start_all();
   // Logs if another process uses the channel.
   void claim(const Sensor& sensor, const std::string& channel);
+  // Logs the words, unless there are none.
+  static void tell(const Sensor& sensor, spdlog::level::level_enum level, const std::string& words);
   void drain_events(Sensor& sensor);
   void report_second(Sensor& sensor, double interval_s);
   // Counts seconds without progress of a thread.

@@ -219,12 +219,12 @@ const status_t& StatusReport::update(const Pipeline& pipeline, const FilterSnaps
 }
 
 void StatusReport::update(Recorder& recorder) {
-  const TapeCounters& tape = recorder.tape().counters();
-  now_.record_deliveries = as_signed(tape.deliveries.value());
-  now_.record_lost = as_signed(recorder.lost_deliveries());
-  now_.record_lost_bytes = as_signed(recorder.lost_bytes());
-  now_.record_file_bytes = as_signed(recorder.file_bytes());
-  now_.record_removed = as_signed(recorder.files_removed());
+  const Recorder::Counts counts = recorder.counts();
+  now_.record_deliveries = as_signed(recorder.tape().counters().deliveries.value());
+  now_.record_lost = as_signed(counts.lost.deliveries);
+  now_.record_lost_bytes = as_signed(counts.lost.bytes);
+  now_.record_file_bytes = as_signed(counts.file_bytes);
+  now_.record_removed = as_signed(counts.files_removed);
 }
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
@@ -247,7 +247,7 @@ std::string StatusReport::wrong_rate() const {
   const double rate_hz = nominal_rate_hz_ / (1.0 + interval_error_), off = rate_hz / nominal_rate_hz_ - 1.0;
   return formatted(
       "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
-      "rate, are %.3g %% too %s",
+      "rate, are %.3g %% too %s: is rate_hz of its options (or nominal_rate_hz) that of the device?",
       rate_hz, nominal_rate_hz_, 100.0 * std::abs(off), off < 0.0 ? "small" : "large");
 }
 

@@ -92,21 +92,24 @@ void Recorder::stop() {
     const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
     if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
   }
-  counters_.unwritten.set(unwritten);
-  publish_counters();
-  counters_.lost_deliveries.add(left.deliveries);
-  counters_.lost_bytes.add(left.bytes);
+  publish_counts(left, unwritten);
   judge(now_ns);
   judge_the_end(archive_.lost_at_close().deliveries + left.deliveries);
 }
 
-void Recorder::publish_counters() {
-  counters_.file_bytes.set(archive_.bytes_written());
-  counters_.files_removed.set(archive_.files_removed());
-  FlightLoss lost = archive_.lost_with_files();
-  lost += archive_.lost_at_close();
-  counters_.lost_deliveries.set(lost.deliveries);
-  counters_.lost_bytes.set(lost.bytes);
+void Recorder::publish_counts(const FlightLoss& lost, std::uint64_t unwritten) {
+  Counts now{archive_.bytes_written(), archive_.files_removed(), unwritten, lost};
+  now.lost += archive_.lost_with_files();
+  now.lost += archive_.lost_at_close();
+  const std::lock_guard lock(mutex_);
+  counts_ = now;
+}
+
+Recorder::Counts Recorder::counts() const {
+  const std::lock_guard lock(mutex_);
+  Counts out = counts_;
+  out.lost += {tape_.counters().lost_deliveries.value(), tape_.counters().lost_bytes.value()};
+  return out;
 }
 
 void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
@@ -117,7 +120,7 @@ void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
 
 void Recorder::turn(std::int64_t now_ns, std::int64_t wall_ns) {
   drain(now_ns, wall_ns, false);
-  publish_counters();
+  publish_counts();
   judge(now_ns);
 }
 

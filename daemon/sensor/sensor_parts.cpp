@@ -45,30 +45,15 @@ void require(bool fits, const SensorConfig& sensor, const char* type, const char
                                          "\": it takes " + needs);
 }
 
-// True if the text contains it as a whole word.
-bool has_word(std::string_view text, std::string_view word) {
-  const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !of_word(static_cast<unsigned char>(text[at - 1]))) &&
-        (end == text.size() || !of_word(static_cast<unsigned char>(text[end]))))
-      return true;
-  }
-  return false;
-}
-
 // The sensor's key of that table which an error names first; else "".
-std::string key_in(const SensorConfig& sensor, const std::string& table, const std::string& complaint) {
-  std::string found;
-  std::size_t first = std::string::npos;
-  for (const auto& [key, line] : sensor.lines) {
-    if (!key.starts_with(table) || !has_word(complaint, key.substr(table.size()))) continue;
-    if (const std::size_t at = complaint.find(key.substr(table.size())); at < first) {
-      first = at;
-      found = key;
-    }
+std::string key_in(const SensorConfig& sensor, const std::string& table, std::string_view complaint) {
+  const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  for (auto end = complaint.begin(); end != complaint.end();) {
+    const auto begin = std::find_if(end, complaint.end(), of_word);
+    end = std::find_if_not(begin, complaint.end(), of_word);
+    if (const std::string key = table + std::string(begin, end); sensor.lines.contains(key)) return key;
   }
-  return found;
+  return "";
 }
 
 std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {

@@ -138,7 +138,7 @@ TEST(Recorder, LooksFourTimesASecondAndIsWokenByNobody) {
   const double seconds = 1e-9 * static_cast<double>(monotonic_ns() - began_ns);
   EXPECT_LE(static_cast<double>(sleeps_of("rec:asleep") - before), 4.0 * seconds + 4.0);
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 0U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 0U);
 }
 
 // New settings begin a file with the very delivery that they take effect at, also where that is within a turn
@@ -198,8 +198,8 @@ TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   EXPECT_EQ(recorder.take_message(good),
             "recorder: memory: No space left on device to the end, the last 10 deliveries are not recorded");
   EXPECT_FALSE(good);
-  EXPECT_EQ(recorder.lost_deliveries(), 10U);
-  EXPECT_EQ(recorder.lost_bytes(), 30U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 10U);
+  EXPECT_EQ(recorder.counts().lost.bytes, 30U);
 }
 
 // New settings that no room was left for are no entry of the record.
@@ -214,8 +214,8 @@ TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
     recorder.tape().note_settings(n + 1);
   }
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 3U);
-  EXPECT_EQ(recorder.entries_unwritten(), 3U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 3U);
+  EXPECT_EQ(recorder.counts().entries_unwritten, 3U);
 }
 
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
@@ -230,8 +230,8 @@ TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
   bool good = false;
   const std::string message = recorder.take_message(good);
   EXPECT_TRUE(test::has(message, "the recording in work has been removed"));
-  EXPECT_GE(recorder.lost_deliveries(), 7U);
-  EXPECT_EQ(recorder.lost_bytes(), 3 * recorder.lost_deliveries());
+  EXPECT_GE(recorder.counts().lost.deliveries, 7U);
+  EXPECT_EQ(recorder.counts().lost.bytes, 3 * recorder.counts().lost.deliveries);
 }
 
 // A source that keeps its bytes until they are read loses none to a recorder that is slower than the decoding
@@ -245,10 +245,10 @@ TEST(Recorder, AFileAtFreePaceIsRecordedWhole) {
   Rig rig(sent, 3600, true, 1024, 0us, true, &recorder.tape());
   rig.run_to_the_end();
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 0U);
-  EXPECT_EQ(recorder.entries_unwritten(), 0U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 0U);
+  EXPECT_EQ(recorder.counts().entries_unwritten, 0U);
   EXPECT_EQ(recorder.tape().counters().bytes.value(), sent.size());
-  EXPECT_EQ(recorder.file_bytes(), disk.used());
+  EXPECT_EQ(recorder.counts().file_bytes, disk.used());
   const ReadBack read = read_back(all_of(disk));
   EXPECT_TRUE(losses(read.counts).empty());
   std::vector<std::uint8_t> recorded;
