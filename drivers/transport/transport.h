@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,7 +20,6 @@
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/counter.h"
-#include "drivers/transport/notices.h"
 #include "drivers/transport/stoppable_wait.h"
 
 namespace ifog {
@@ -73,6 +73,38 @@ struct TransportFault {
   const char* what = nullptr;  // static text; nullptr: none
   std::uint64_t line = 0;      // 0: not line-based
   std::string_view text{};     // beginning of the text there; lives as long as the transport
+};
+
+// Messages from opening a device, for the log. Thread-safe; the mutex is used when a device opens, never
+// while it is read.
+class Notices {
+ public:
+  // What the device did not grant but is not essential; "" for nothing.
+  void keep_warning(std::string&& warning) {
+    const std::lock_guard lock(mutex_);
+    new_warning_ = new_warning_ || (!warning.empty() && warning != warning_);
+    warning_ = std::move(warning);
+  }
+  // Returns each text once, even if the device is reopened with the same; "" if there is nothing new.
+  [[nodiscard]] std::string take_warning() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(new_warning_, false) ? warning_ : std::string();
+  }
+  // The device's answers to its set-up.
+  void keep_answers(const std::string& answers) {
+    const std::lock_guard lock(mutex_);
+    answers_ = answers;
+  }
+  // Returns them once each time; "" if there is nothing new.
+  [[nodiscard]] std::string take_answers() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(answers_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string warning_, answers_;
+  bool new_warning_ = false;
 };
 
 class Transport {

@@ -22,19 +22,13 @@ constexpr std::size_t kFramesAtOnce = 64;  // frames per system call
 class CanTransport final : public Transport {
  public:
   explicit CanTransport(const CanSettings& settings) : Transport(settings.interface), settings_(settings) {
-    for (std::size_t i = 0; i < kFramesAtOnce; ++i) {
-      vectors_[i] = {&raw_[i], sizeof raw_[i]};
-      messages_[i].msg_hdr.msg_iov = &vectors_[i];
-      messages_[i].msg_hdr.msg_iovlen = 1;
-      messages_[i].msg_hdr.msg_control = control_[i].bytes;
-    }
+    for (std::size_t i = 0; i < kFramesAtOnce; ++i) batch_.place(i, {&raw_[i], sizeof raw_[i]});
   }
 
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   int receive_waiting() noexcept;
-  int receive_batch() noexcept;
   std::span<const ifog_can_frame> accept(std::size_t received, std::int64_t read_at) noexcept;
   void count_losses() noexcept override;
   void count_drops(std::uint32_t drops) noexcept;
@@ -42,13 +36,10 @@ class CanTransport final : public Transport {
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
-  std::size_t filled_ = kFramesAtOnce;  // number of messages_ to be prepared
   int leaving_ = 0;  // errno of the interface's disappearance; waiting frames are still read
   KernelStamps stamps_;
   std::array<canfd_frame, kFramesAtOnce> raw_{};
-  std::array<iovec, kFramesAtOnce> vectors_{};
-  std::array<ControlRoom, kFramesAtOnce> control_{};
-  std::array<mmsghdr, kFramesAtOnce> messages_{};
+  ReceiveBatch<kFramesAtOnce> batch_;
   std::array<ifog_can_frame, kFramesAtOnce> frames_{};
 };
 
@@ -92,24 +83,12 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 int CanTransport::receive_waiting() noexcept {
   constexpr int kErrors = 4;  // more than one socket can report
   for (int errors = 0; errors < kErrors; ++errors) {
-    const int n = receive_batch();
+    const int n = batch_.receive(socket_.fd());
     if (n > 0) return n;
     if (n < 0 && (errno == EINTR || errno == EAGAIN)) return 0;
     leaving_ = n < 0 ? errno : ENODEV;
   }
   return 0;
-}
-
-int CanTransport::receive_batch() noexcept {
-  // Resets the messages that the previous call used.
-  for (std::size_t i = 0; i < filled_; ++i) {
-    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
-    messages_[i].msg_hdr.msg_flags = 0;
-  }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, MSG_DONTWAIT, nullptr);
-  // A failed message may be partly filled.
-  filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
-  return n;
 }
 
 // Each frame carries the count of drops before it; after the last one it must be requested.
@@ -133,10 +112,10 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received, std::
   std::size_t kept = 0;
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
-    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
+    const ReceiveControl said = batch_.control(i);
     if (said.has_drops) count_drops(said.drops);
     ifog_can_frame& frame = frames_[kept];
-    switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
+    switch (from_socket(raw_[i], batch_.length(i), frame)) {
       case CanKind::data:
         frame.arrival_ns = said.arrival_ns != 0 ? stamps_.on_arrival_clock(said.arrival_ns) : read_at;
         ++kept;

@@ -106,32 +106,6 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
                         "from 0 s on, until the filter has settled, this need not be what was published"));
 }
 
-// A timer that runs it must see that it failed.
-TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
-  configure();
-  const std::string night = "night --config " + path("ifogd.toml");
-  EXPECT_NE(ifog(night), 0);  // no state folder
-  EXPECT_TRUE(test::has(complaint_, "expected the daemon's state folder"));
-  fs::create_directories(path("state"));
-  EXPECT_EQ(ifog(night), 0) << complaint_;  // nothing is recorded yet
-  write("state/nose.night.json", "{");
-  EXPECT_NE(ifog(night), 0);
-  EXPECT_TRUE(test::has(complaint_, "nose.night.json: is no JSON object"));
-  write("state/nose.night.json", "{\"schema\": \"ifog.night/1\"}");
-  EXPECT_NE(ifog(night), 0);
-  EXPECT_TRUE(test::has(complaint_, "nose.night.json: damaged: key 'sensor' not found"));
-  EXPECT_FALSE(test::has(complaint_, "json.exception")) << complaint_;
-  fs::remove(path("state/nose.night.json"));
-  fs::create_directories(path("record/nose"));
-  write("record/nose/00000001-20260101T000000Z.ifr", "junk");
-  EXPECT_NE(ifog(night), 0);
-  EXPECT_TRUE(test::has(complaint_, "is no flight recording"));
-  fs::remove_all(path("record/nose"));
-  write("record/nose", "a file");
-  EXPECT_NE(ifog(night), 0);
-  EXPECT_TRUE(test::has(complaint_, "record/nose: cannot read"));
-}
-
 // All settings of the configuration: where the drivers are, too.
 TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
   configure();
