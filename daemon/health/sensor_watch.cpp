@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ifog/status_t.hpp>
 
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -130,11 +131,11 @@ void SensorWatch::test_level(Axis& axis, double mean) {
 }
 
 std::int32_t SensorWatch::noticed() const {
-  std::int32_t out = range_ ? kNoticedRange : 0;
+  std::int32_t out = range_ ? status_t::NOTICED_RANGE : 0;
   for (const Axis& axis : axes_) {
-    if (axis.loud.alarmed()) out |= kNoticedNoise;
-    if (axis.odd_neighbours.alarmed() || axis.follows.alarmed()) out |= kNoticedColour;
-    if (axis.bias_for > 0.0) out |= kNoticedBias;
+    if (axis.loud.alarmed()) out |= status_t::NOTICED_NOISE;
+    if (axis.odd_neighbours.alarmed() || axis.follows.alarmed()) out |= status_t::NOTICED_COLOUR;
+    if (axis.bias_for > 0.0) out |= status_t::NOTICED_BIAS;
   }
   return out;
 }
@@ -143,7 +144,7 @@ std::string SensorWatch::words(std::int32_t only) const {
   const std::int32_t now = noticed() & only;
   std::string out;
   const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
-  if ((now & kNoticedNoise) != 0) {
+  if ((now & status_t::NOTICED_NOISE) != 0) {
     double most = 0.0;
     for (const Axis& axis : axes_)
       if (axis.loud.alarmed()) most = std::max(most, axis.louder);
@@ -152,14 +153,14 @@ std::string SensorWatch::words(std::int32_t only) const {
         "then compare recordings with `ifog allan`",
         std::sqrt(most)));
   }
-  if ((now & kNoticedColour) != 0)
+  if ((now & status_t::NOTICED_COLOUR) != 0)
     add("innovations are no longer white: something acts on the sensor that its model does not know, run "
         "`ifog night`");
-  if ((now & kNoticedBias) != 0)
+  if ((now & status_t::NOTICED_BIAS) != 0)
     add(formatted(
         "rate at rest has stepped by %+.3g °/h: align again, and run `ifog night` if it was not turned",
         step_radps_ / kDegreePerHour));
-  if ((now & kNoticedRange) != 0)
+  if ((now & status_t::NOTICED_RANGE) != 0)
     add("a channel is outside the range of the model for over ten minutes: run `ifog night`, which fits it "
         "there");
   return out;

@@ -33,14 +33,6 @@
 
 namespace ifog {
 
-// NOTICED_… of status_t
-enum Noticed : std::int32_t {
-  kNoticedNoise = 1,
-  kNoticedColour = 2,
-  kNoticedBias = 4,
-  kNoticedRange = 8,
-};
-
 class SensorWatch {
  public:
   static constexpr double kAlarmEvery_s = 40.0 * 86400.0;
@@ -56,6 +48,7 @@ class SensorWatch {
   // Another model is in use: learning restarts.
   void renew();
 
+  // Bits NOTICED_… of status_t.
   [[nodiscard]] std::int32_t noticed() const;
   // What was noticed and what to do, one line; "" for nothing. only: mask.
   [[nodiscard]] std::string words(std::int32_t only = ~0) const;

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <array>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <string>
 
-#include "daemon/pipeline/ring.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/counter.h"
 
@@ -42,27 +42,14 @@ std::string describe(const Event& event);
 // From one thread of a pipeline to housekeeping.
 class EventQueue {
  public:
-  EventQueue() : ring_(256) {}
   void report(const Event& event) noexcept {
-    Event* const slot = ring_.claim();
-    if (slot == nullptr) {
-      lost_.add(1);
-      return;
-    }
-    *slot = event;
-    ring_.commit();
+    if (!ring_.push(event)) lost_.add(1);
   }
-  bool take(Event& out) noexcept {
-    const Event* const event = ring_.front();
-    if (event == nullptr) return false;
-    out = *event;
-    ring_.pop();
-    return true;
-  }
+  bool take(Event& out) noexcept { return ring_.pop(out); }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.value(); }
 
  private:
-  Ring<Event> ring_;
+  boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<256>> ring_;
   Counter lost_;
 };
 

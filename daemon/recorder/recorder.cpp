@@ -5,7 +5,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstring>
 #include <iterator>
@@ -78,11 +77,11 @@ void Recorder::stop() {
   drain(now_ns, wall_ns, true);
   // Losses without a later delivery.
   const TapeCounters& counters = tape_.counters();
-  if (const std::uint64_t unreported = counters.lost_deliveries.value() - reported_[0]; unreported > 0) {
-    const std::array<std::uint64_t, 2> lost{unreported, counters.lost_bytes.value() - reported_[1]};
+  const FlightLoss unreported{counters.lost_deliveries.value() - reported_.deliveries,
+                              counters.lost_bytes.value() - reported_.bytes};
+  if (unreported.deliveries > 0)
     archive_.add({FlightKind::lost, 0, 0, 0, now_ns},
-                 {reinterpret_cast<const std::uint8_t*>(lost.data()), sizeof lost});
-  }
+                 {reinterpret_cast<const std::uint8_t*>(&unreported), sizeof unreported});
   std::uint64_t unwritten = archive_.close(now_ns, wall_ns);
   // Entries that could not leave the tape because of the disk.
   FlightLoss left;
@@ -134,9 +133,9 @@ void Recorder::fill() {
     }
     archive_.add(head, payload_, tape_.begins_delivery());
     if (head.kind != FlightKind::lost) continue;
-    std::array<std::uint64_t, 2> lost{};
-    std::memcpy(lost.data(), payload_.data(), sizeof lost);
-    for (std::size_t i = 0; i < lost.size(); ++i) reported_[i] += lost[i];
+    FlightLoss lost;
+    std::memcpy(&lost, payload_.data(), sizeof lost);
+    reported_ += lost;
   }
 }
 

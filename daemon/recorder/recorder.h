@@ -3,7 +3,6 @@
 // full disk affects only the tape. It is not woken: it checks a few times a second.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -61,8 +60,7 @@ class Recorder {
   Tape tape_;
   FlightArchive archive_;
   std::vector<std::uint8_t> payload_;
-  // Deliveries and bytes lost, as read from the tape.
-  std::array<std::uint64_t, 2> reported_{};
+  FlightLoss reported_;  // as read from the tape
   // Losses before the problem, and its beginning and end by turns.
   struct Trouble {
     bool present = false;

@@ -2,6 +2,7 @@
 #include "daemon/sensor/sensor_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
@@ -38,11 +39,24 @@ std::vector<CanId> wanted_ids(const ifog_description& description) {
   return ids;
 }
 
-void require(bool fits, const SensorConfig& sensor, const char* type, const char* needs) {
-  if (!fits)
-    throw KeyError("transport.type", "driver \"" + printable(sensor.driver) +
-                                         "\" cannot be fed from a transport of type \"" + type +
-                                         "\": it takes " + needs);
+using Kind = TransportConfig::Kind;
+
+bool is_candump(const TransportConfig& transport) {
+  return transport.kind == Kind::file && transport.file.format == FileSettings::Format::candump;
+}
+
+// Throws if the driver cannot be fed from the transport.
+void check_feeding(const SensorConfig& sensor, const DriverInstance& driver) {
+  const TransportConfig& transport = sensor.transport;
+  const bool frames = transport.kind == Kind::can || is_candump(transport);
+  if (frames ? driver.takes_can() : driver.takes_bytes()) return;
+  constexpr std::array kTypes{"serial", "can", "udp", "tcp", "file (bytes)"};
+  const std::string type =
+      is_candump(transport) ? "file (candump)" : kTypes.at(static_cast<std::size_t>(transport.kind));
+  throw KeyError("transport.type",
+                 "driver \"" + printable(sensor.driver) + "\" cannot be fed from a transport of type \"" +
+                     type + "\": it takes " + (frames ? "bytes" : "CAN frames") +
+                     (transport.kind == Kind::file && !frames ? ": format = \"candump\"" : ""));
 }
 
 // The sensor's key of that table which an error names first; else "".
@@ -54,27 +68,6 @@ std::string key_in(const SensorConfig& sensor, const std::string& table, std::st
     if (const std::string key = table + std::string(begin, end); sensor.lines.contains(key)) return key;
   }
   return "";
-}
-
-std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  require(driver.takes_can(), sensor, "can", "bytes");
-  CanSettings settings;
-  settings.interface = sensor.transport.interface;
-  settings.ids = wanted_ids(driver.description());
-  return make_can_transport(settings);
-}
-
-std::unique_ptr<Transport> file_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  const TransportConfig& config = sensor.transport;
-  const bool candump = config.file.format == FileSettings::Format::candump;
-  if (candump)
-    require(driver.takes_can(), sensor, "file (candump)", "bytes");
-  else
-    require(driver.takes_bytes(), sensor, "file (bytes)", "CAN frames: format = \"candump\"");
-  FileSettings settings = config.file;
-  settings.interface = config.interface;
-  if (candump) settings.ids = wanted_ids(driver.description());
-  return make_file_transport(settings);
 }
 
 }  // namespace
@@ -90,7 +83,7 @@ DriverInstance make_sensor_driver(const SensorConfig& sensor,
 }
 
 SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver) {
-  require(driver.takes_bytes(), sensor, "serial", "CAN frames");
+  check_feeding(sensor, driver);
   SerialSettings settings = sensor.transport.serial;
   if (settings.baud == 0) settings.baud = driver.description().baud;
   if (settings.baud == 0)
@@ -101,21 +94,24 @@ SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverIn
 }
 
 std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  switch (sensor.transport.kind) {
-    case TransportConfig::Kind::serial:
+  check_feeding(sensor, driver);
+  const TransportConfig& transport = sensor.transport;
+  FileSettings file = transport.file;
+  switch (transport.kind) {
+    case Kind::serial:
       return make_serial_transport(sensor_serial_settings(sensor, driver));
-    case TransportConfig::Kind::can:
-      return can_transport(sensor, driver);
-    case TransportConfig::Kind::udp:
-      require(driver.takes_bytes(), sensor, "udp", "CAN frames");
-      return make_udp_transport(sensor.transport.udp);
-    case TransportConfig::Kind::tcp:
-      require(driver.takes_bytes(), sensor, "tcp", "CAN frames");
-      return make_tcp_transport(sensor.transport.tcp);
-    case TransportConfig::Kind::file:
+    case Kind::can:
+      return make_can_transport({.interface = transport.interface, .ids = wanted_ids(driver.description())});
+    case Kind::udp:
+      return make_udp_transport(transport.udp);
+    case Kind::tcp:
+      return make_tcp_transport(transport.tcp);
+    case Kind::file:
       break;
   }
-  return file_transport(sensor, driver);
+  file.interface = transport.interface;
+  if (is_candump(transport)) file.ids = wanted_ids(driver.description());
+  return make_file_transport(file);
 }
 
 std::vector<ChannelConfig> outside_channels(const SensorConfig& sensor) {
