@@ -177,20 +177,37 @@ TEST(Config, ReadsANetworkSensor) {
   EXPECT_EQ(udp.sensors[0].restart_for(tcp.sensors[0]), "transport");
 }
 
-// What each setting may be is the transport's to say: udp_complaint() and tcp_complaint().
 TEST(Config, NamesWhatIsWrongWithANetworkSensor) {
-  for (const auto& [transport, place] :
-       {std::pair{"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
-        {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
-        {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
-        {"type = \"udp\"\nport = 5000\nbind = \"::1\"\nhost = \"10.0.0.1\"\n",
-         "8: sensor.transport.host = '10.0.0.1': "},
-        {"type = \"tcp\"\nport = 4001\n", "4: sensor.transport.host: missing; "},
-        {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n", "6: sensor.transport.host = 'gyro.local': "},
-        {"type = \"tcp\"\nhost = \"10.0.0.1\"\nport = 4001\nbaud = 9600\n",
-         "8: sensor.transport.baud: unknown key; "}})
-    EXPECT_TRUE(complaint(network(transport)).starts_with(std::string("f.toml:") + place))
+  const std::string udp = "type = \"udp\"\nport = 5000\n", tcp = "type = \"tcp\"\nport = 4001\n";
+  for (const auto& [transport, place] : std::initializer_list<std::pair<std::string, std::string>>{
+           {"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
+           {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
+           {udp + "bind = \"here\"\n",
+            "7: sensor.transport.bind = 'here': expected a numeric address of this "},
+           {udp + "bind = \"239.1.2.3\"\n", "7: sensor.transport.bind = '239.1.2.3': "},
+           {udp + "interface = \"eth0\"\n", "7: sensor.transport.interface = 'eth0': "},
+           {udp + "group = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
+           {udp + "group = \"10.1.2.3\"\ninterface = \"eth0\"\n",
+            "7: sensor.transport.group = '10.1.2.3': expected a multicast address"},
+           {udp + "group = \"239.1.2.3\"\ninterface = \"eth0\"\nbind = \"10.0.0.1\"\n",
+            "9: sensor.transport.bind = '10.0.0.1': "},
+           {udp + "host = \"gyro\"\n", "7: sensor.transport.host = 'gyro': "},
+           {udp + "bind = \"::1\"\nhost = \"10.0.0.1\"\n",
+            "8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, as "
+            "::1"},
+           {tcp, "4: sensor.transport.host: missing; "},
+           {tcp + "host = \"10.0.0.1\"\nbaud = 9600\n", "8: sensor.transport.baud: unknown key; "}})
+    EXPECT_TRUE(complaint(network(transport)).starts_with("f.toml:" + place))
         << complaint(network(transport));
+  for (const std::string host :
+       {"gyro.local", "239.1.2.3", "fe80::1", "ff02::1", "192.168.1", "192.168.1.256", "1.2.3.4:5", "[::1]",
+        "fe80::1%", "fe80::1%an-interface-too-long", "::1 "})
+    EXPECT_TRUE(complaint(network(tcp + "host = \"" + host + "\"\n"))
+                    .starts_with("f.toml:7: sensor.transport.host = '" + host + "': expected a numeric"));
+  for (const std::string host : {"223.255.255.255", "::1", "fe80::1%eth0"})
+    EXPECT_EQ(complaint(network(tcp + "host = \"" + host + "\"\n")), "");
+  EXPECT_EQ(complaint(network(udp + "group = \"ff02::1:2\"\ninterface = \"eth0\"\nhost = \"fe80::1\"\n")),
+            "");
 }
 
 TEST(Config, GathersAllErrors) {

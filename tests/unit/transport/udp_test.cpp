@@ -162,26 +162,5 @@ TEST(UdpTransport, AGroupIsJoinedOnItsInterface) {
   EXPECT_EQ(text_of(transport->read(kForever)), "to all");
 }
 
-TEST(UdpTransport, SaysWhichSettingIsWrong) {
-  const auto complaint = [](std::uint16_t port, const char* bind, const char* group, const char* interface,
-                            const char* host) {
-    return udp_complaint({.port = port, .bind = bind, .group = group, .interface = interface, .host = host});
-  };
-  EXPECT_EQ(complaint(5000, "", "", "", ""), "");
-  EXPECT_EQ(complaint(5000, "", "ff02::1:2", "eth0", "fe80::1"), "");
-  EXPECT_EQ(complaint(0, "", "", "", ""), "port = 0: expected 1 ... 65535");
-  EXPECT_EQ(complaint(5000, "here", "", "", ""),
-            "bind = 'here': expected a numeric address of this computer, \"192.168.1.1\" or \"fd00::1\"");
-  EXPECT_EQ(complaint(5000, "239.1.2.3", "", "", "").substr(0, 18), "bind = '239.1.2.3'");
-  EXPECT_EQ(complaint(5000, "", "10.1.2.3", "eth0", ""),
-            "group = '10.1.2.3': expected a multicast address, \"239.1.2.3\" or \"ff02::1:2\"");
-  EXPECT_EQ(complaint(5000, "", "239.1.2.3", "", "").substr(0, 19), "interface: missing;");
-  EXPECT_EQ(complaint(5000, "10.0.0.1", "239.1.2.3", "eth0", "").substr(0, 17), "bind = '10.0.0.1'");
-  EXPECT_EQ(complaint(5000, "", "", "eth0", "").substr(0, 18), "interface = 'eth0'");
-  EXPECT_EQ(complaint(5000, "", "", "", "gyro").substr(0, 13), "host = 'gyro'");
-  EXPECT_EQ(complaint(5000, "10.0.0.1", "", "", "::1"),
-            "host = '::1': expected an address of the same kind, IPv4 or IPv6, as 10.0.0.1");
-}
-
 }  // namespace
 }  // namespace ifog
