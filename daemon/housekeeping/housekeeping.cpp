@@ -172,11 +172,12 @@ void Housekeeping::tell(const Sensor& sensor, spdlog::level::level_enum level, c
 
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
-  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
+  Notices& notices = sensor.parts.pipeline->reader().transport().notices();
+  if (const std::string warning = notices.take_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
   }
-  tell(sensor, spdlog::level::info, sensor.parts.pipeline->take_transport_answers());
+  tell(sensor, spdlog::level::info, notices.take_answers());
   if (sensor.parts.recorder != nullptr) {
     bool good = false;
     const std::string message = sensor.parts.recorder->take_message(good);

@@ -17,7 +17,7 @@
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
-#include "drivers/transport/serial/serial.h"
+#include "drivers/transport/serial/serial_port.h"
 
 namespace ifog {
 namespace {

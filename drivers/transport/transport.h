@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "drivers/ifog/driver.h"
-#include "drivers/transport/backlog.h"
 #include "drivers/transport/counter.h"
 #include "drivers/transport/stoppable_wait.h"
 
@@ -107,6 +106,33 @@ class Notices {
   bool new_warning_ = false;
 };
 
+// Decides if the time of a read is an arrival time.
+//
+// A process that was delayed (stopped, starved, asleep with its computer) reads everything that arrived
+// meanwhile at once. If the read time were used as arrival time, late reads would look like a silence, and
+// later samples like losses. So after a read that was entered or left late, arrival times are unknown until
+// the backlog is read.
+class Backlog {
+ public:
+  // Reports one read: entry, end and timeout. True: its data may have arrived at any time.
+  bool read(std::int64_t entered_ns, std::int64_t left_ns, std::int64_t timeout_ns) noexcept {
+    const bool late = left_ns - entered_ns > timeout_ns + kDelayed_ns ||
+                      (left_ns_ != 0 && entered_ns - left_ns_ > kDelayed_ns);
+    left_ns_ = left_ns;
+    if (late) until_ns_ = left_ns + kPiled_ns;
+    return until_ns_ != 0;
+  }
+  // True if the backlog may be read completely, provided that nothing more waits.
+  [[nodiscard]] bool may_be_over() const noexcept { return left_ns_ > until_ns_; }
+  void over() noexcept { until_ns_ = 0; }
+
+ private:
+  static constexpr std::int64_t kDelayed_ns = 50'000'000;
+  // The kernel passes data between buffers, so an empty read soon after the first is not conclusive.
+  static constexpr std::int64_t kPiled_ns = 100'000'000;
+  std::int64_t left_ns_ = 0, until_ns_ = 0;
+};
+
 class Transport {
  public:
   // Throws std::runtime_error if no eventfd is available.
@@ -145,7 +171,7 @@ class Transport {
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
   // Messages from opening the device.
-  [[nodiscard]] Notices& notices() { return notices_; }
+  [[nodiscard]] Notices& notices() const { return notices_; }
   // No more data: of the reading thread.
   void end(int reason) noexcept { enter(TransportState::ended, reason); }
   // A fault in the data, also counted as malformed. text: of the line. Of the reading thread.
@@ -202,7 +228,7 @@ class Transport {
 
   std::string name_;
   std::vector<std::uint8_t> opening_;
-  Notices notices_;
+  mutable Notices notices_;
   Link link_;
   Backlog backlog_;
   // Relaxed: independent values. A reader may see a state before its reason, which is only for messages.

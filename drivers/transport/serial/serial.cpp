@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/transport/serial/serial.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "drivers/transport/serial/set_up_dialogue.h"
 
 #include <poll.h>

@@ -131,7 +131,6 @@ TEST(Pipeline, AFilterThatIsSlowIsLeftToItsThread) {
   Rig rig(frames(kCount), kFrame, false, 8, 1500us);
   const HandOver& hand_over = rig.pipeline->hand_over();
   rig.run_from_rest_to_the_end();
-  EXPECT_EQ(hand_over.too_long(), hand_over.done_here());
   EXPECT_LE(hand_over.done_here(), 12U);
   EXPECT_GT(rig.pipeline->queue().merged(), 0U);
   const std::vector<rate_t> messages = rig.publisher->messages();

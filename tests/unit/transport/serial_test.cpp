@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/serial/serial.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "drivers/transport/sole_reader.h"
 #include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
