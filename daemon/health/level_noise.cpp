@@ -30,6 +30,7 @@ double sum(const LevelNoise::Vector& values) { return std::accumulate(values.beg
 }  // namespace
 
 LevelNoise::LevelNoise() {
+  filters_.reserve(static_cast<std::size_t>(kInstabilities * kWalks));
   for (int b = 0; b < kInstabilities; ++b)
     for (int k = 0; k < kWalks; ++k)
       filters_.push_back({b == 0 ? 0.0 : std::pow(10.0, kLeastInstability + kStepOfTable * (b - 1)),

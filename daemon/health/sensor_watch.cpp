@@ -32,12 +32,12 @@ double blocks_between_alarms(std::size_t axes, double block_s, double share) {
 SensorWatch::SensorWatch(std::size_t axes, double sample_rate_hz)
     : block_samples_(std::max(kFewestSamples, std::round(kBlock_s * sample_rate_hz))),
       period_s_(1.0 / sample_rate_hz),
-      fresh_(std::log(blocks_between_alarms(axes, block_samples_ * period_s_, (1.0 - kForStep) / kCusums)),
-             blocks_between_alarms(axes, block_samples_ * period_s_, kForStep)),
-      axes_(axes, fresh_) {}
+      cusum_(std::log(blocks_between_alarms(axes, block_samples_ * period_s_, (1.0 - kForStep) / kCusums))),
+      step_(blocks_between_alarms(axes, block_samples_ * period_s_, kForStep)),
+      axes_(axes, Axis(cusum_, step_)) {}
 
 void SensorWatch::renew() {
-  axes_.assign(axes_.size(), fresh_);
+  axes_.assign(axes_.size(), Axis(cusum_, step_));
   for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].at_block = before_.axis[a];
   range_ = false;
   samples_ = seen_;

@@ -77,7 +77,7 @@ class SensorWatch {
   void follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const;
 
   double block_samples_, period_s_;
-  Axis fresh_;  // without any knowledge
+  double cusum_, step_;  // thresholds
   std::vector<Axis> axes_;
   RestSums before_{};
   std::uint64_t samples_ = 0, out_of_range_ = 0;  // at the start of the present ten minutes
