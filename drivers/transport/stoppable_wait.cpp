@@ -2,9 +2,7 @@
 #include "drivers/transport/stoppable_wait.h"
 
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/timerfd.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -15,18 +13,16 @@
 
 namespace ifog {
 
-StoppableWait::StoppableWait()
-    : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
-      alarm_(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)) {
-  if (event_ < 0 || alarm_ < 0)
-    throw std::runtime_error("cannot make an eventfd or timerfd: " + std::generic_category().message(errno));
+StoppableWait::StoppableWait() : alarm_(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK)) {
+  if (alarm_ < 0)
+    throw std::runtime_error("cannot make a timerfd: " + std::generic_category().message(errno));
 }
 
 void StoppableWait::stop() noexcept {
   const int before = errno;  // a signal handler must preserve errno
-  stopped_.store(true, std::memory_order_relaxed);
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = write(event_, &one, sizeof one);
+  stopped_.store(true);
+  const itimerspec now{{}, {0, 1}};
+  timerfd_settime(alarm_, 0, &now, nullptr);
   errno = before;
 }
 
@@ -39,11 +35,13 @@ StoppableWait::Wake StoppableWait::wait(int fd, short events, std::int64_t until
       const itimerspec when{{}, {until_ns / 1'000'000'000, until_ns % 1'000'000'000}};
       if (!is_over && timerfd_settime(alarm_, TFD_TIMER_ABSTIME, &when, nullptr) == 0) alarm_ns_ = until_ns;
     }
-    std::array<pollfd, 3> fds{{{event_, POLLIN, 0}, {fd, events, 0}, {alarm_, POLLIN, 0}}};
+    // After the alarm is set, so that stop()'s ringing is not lost.
+    if (stopped()) return Wake::stopped;
+    std::array<pollfd, 2> fds{{{fd, events, 0}, {alarm_, POLLIN, 0}}};
     const int n = poll(fds.data(), fds.size(), is_over ? 0 : -1);
-    if (stopped() || (n > 0 && fds[0].revents != 0)) return Wake::stopped;
-    if (n > 0 && fds[1].revents != 0) {
-      if (happened != nullptr) *happened = fds[1].revents;
+    if (stopped()) return Wake::stopped;
+    if (n > 0 && fds[0].revents != 0) {
+      if (happened != nullptr) *happened = fds[0].revents;
       return Wake::ready;
     }
     if (is_over) return Wake::timeout;

@@ -11,12 +11,12 @@ namespace ifog {
 
 class StoppableWait {
  public:
-  // Throws std::runtime_error if no descriptor is available.
+  // Throws std::runtime_error if no timerfd is available.
   StoppableWait();
 
   // Ends the present wait and all later ones.
   void stop() noexcept;
-  [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool stopped() const { return stopped_.load(); }
 
   enum class Wake { ready, timeout, stopped };
   // Waits for `events` on fd (only for time and stop() if fd is −1), until `until_ns` of CLOCK_MONOTONIC.
@@ -26,12 +26,11 @@ class StoppableWait {
   [[nodiscard]] bool is_readable(int fd) noexcept;
 
  private:
-  Fd event_;  // set by stop() and never read, so all later waits return at once
-  // Ends a wait at alarm_ns_. A deadline of poll() itself is a timer that every read sets anew, which costs more
-  // than the read; with steady traffic this one is set once per deadline.
+  // Ends a wait at alarm_ns_, and at once after stop(). A deadline of poll() itself is a timer that every read sets
+  // anew, which costs more than the read; with steady traffic this one is set once per deadline.
   Fd alarm_;
   std::int64_t alarm_ns_ = INT64_MAX;  // not set
-  // Waits are ended by the event, not by this flag.
+  // Sequentially consistent with the alarm: either stop() rings last, or the wait sees the flag.
   std::atomic<bool> stopped_{false};
 };
 
