@@ -10,17 +10,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "daemon/config/config.h"
 #include "daemon/config/version_text.h"
 #include "daemon/housekeeping/housekeeping.h"
 #include "daemon/housekeeping/log.h"
-#include "daemon/housekeeping/signals.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
@@ -28,6 +27,14 @@
 #include "drivers/system/shell_word.h"
 
 namespace {
+
+// For this thread and its later ones.
+void block(std::initializer_list<int> signals) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int each : signals) sigaddset(&set, each);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
 
 // Opens closed standard streams, so that the log cannot go into a gyro's serial line; and ignores SIGPIPE, so
 // that the log's reader cannot end the daemon.
@@ -47,18 +54,12 @@ std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
   return std::make_unique<NowherePublisher>();
 }
 
-// The parser would report a missing --config before an unknown option or a file without it.
-std::string unknown_option(const CLI::App& app, int argc, const char* const* argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const std::string name = word.substr(0, word.find('='));
-    if (name.starts_with("--") && app.get_option_no_throw(name) == nullptr)
-      return "unknown option " + ifog::in_quotes(name) +
-             ifog::meant_or_known(name, std::array{"--config", "--check", "--version", "--help"});
-    if (!name.starts_with('-') && (i == 1 || std::string_view(argv[i - 1]) != "--config"))
-      return "a configuration is given by --config " + ifog::shell_word(word);
-  }
-  return "";
+// What is wrong with a word that is no option of this program.
+std::string foreign(const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  if (!name.starts_with('-')) return "a configuration is given by --config " + ifog::shell_word(word);
+  return "unknown option " + ifog::in_quotes(name) +
+         ifog::meant_or_known(name, std::array{"--config", "--check", "--version", "--help"});
 }
 
 // Failed if the output could not be written.
@@ -73,7 +74,7 @@ int said(int code) {
 
 int main(int argc, char** argv) {
   // First of all: a reload requested while the configuration is read happens after it, an end at once.
-  ifog::block_reload();
+  block({SIGHUP});
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version", ifog::version_text("ifogd"));
@@ -81,14 +82,16 @@ int main(int argc, char** argv) {
   bool check = false;
   app.add_option("--config", file, "configuration (TOML)")->required()->type_name("FILE");
   app.add_flag("--check", check, "say what is wrong with the configuration, open nothing");
+  app.allow_extras();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (const std::string unknown = unknown_option(app, argc, argv); !unknown.empty()) {
-      std::fprintf(stderr, "ifogd: %s\n", unknown.c_str());
-      return 2;
-    }
-    return app.exit(error) == 0 ? said(0) : 2;
+    // An unknown word is reported before a missing --config.
+    if (app.remaining().empty()) return app.exit(error) == 0 ? said(0) : 2;
+  }
+  if (const auto words = app.remaining(); !words.empty()) {
+    std::fprintf(stderr, "ifogd: %s\n", foreign(words.front()).c_str());
+    return 2;
   }
   try {
     ifog::Config config = ifog::read_config(file);
@@ -103,7 +106,7 @@ int main(int argc, char** argv) {
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return said(0);
     }
-    ifog::block_signals();
+    block({SIGTERM, SIGINT, SIGHUP});
     return housekeeping.run();
   } catch (const ifog::ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/channels/channel_sources.h"
 
+#include <fcntl.h>
 #include <lcm/lcm.h>
+#include <linux/magic.h>
 #include <poll.h>
-#include <sys/eventfd.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <variant>
 
 #include "daemon/channels/can_channel.h"
 #include "daemon/channels/lcm_field.h"
-#include "daemon/channels/number_file.h"
 #include "daemon/sensor/facts.h"
+#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/fd.h"
 #include "drivers/transport/can/can.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/stoppable_wait.h"
 #include "filters/chain/plausibility.h"
 
 namespace ifog {
@@ -73,6 +83,44 @@ class Entrance {
   bool good_ = false;  // last_ is valid
 };
 
+// Identifies a version of a file; nothing for files that are generated at each read (sysfs, procfs).
+using FileWriting = std::optional<std::tuple<dev_t, ino_t, std::int64_t>>;
+
+FileWriting writing_of(int fd, const struct stat& info) {
+  struct statfs system {};
+  if (fstatfs(fd, &system) != 0) return std::nullopt;
+  const auto type = static_cast<unsigned long>(system.f_type);
+  if (type == SYSFS_MAGIC || type == PROC_SUPER_MAGIC || type == DEBUGFS_MAGIC) return std::nullopt;
+  return {{info.st_dev, info.st_ino, info.st_mtim.tv_sec * 1'000'000'000LL + info.st_mtim.tv_nsec}};
+}
+
+// The single number in a file (hwmon, thermal zones, IIO), or the reason why there is none. Blanks and line ends
+// may surround it; other characters make it invalid, such as "21,5". Never blocks: a FIFO would delay all other
+// channels and the daemon's end.
+std::variant<double, ChannelFault> read_number_file(const std::string& path, FileWriting& writing) {
+  using Kind = ChannelFault::Kind;
+  writing.reset();
+  const Fd fd(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+  if (fd < 0) return ChannelFault{.kind = Kind::unreadable, .error = errno};
+  struct stat info {};
+  if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) return ChannelFault{.kind = Kind::no_file};
+  writing = writing_of(fd, info);
+  std::array<char, 128> buffer{};
+  const ssize_t length = ::read(fd, buffer.data(), buffer.size());
+  if (length < 0) return ChannelFault{.kind = Kind::unreadable, .error = errno};
+  std::string_view text(buffer.data(), static_cast<std::size_t>(length));
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t from = text.find_first_not_of(kBlank);
+  if (from == std::string_view::npos) return ChannelFault{.kind = Kind::empty};
+  // Too long for a number; its end would be missing.
+  if (text.size() == buffer.size()) return ChannelFault{.kind = Kind::no_number};
+  text = text.substr(from, text.find_last_not_of(kBlank) - from + 1);
+  double number = 0.0;
+  const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return ChannelFault{.kind = Kind::no_number};
+  return number;
+}
+
 class FileChannel {
  public:
   explicit FileChannel(ChannelSources::Wanted wanted) : in_(std::move(wanted)) {}
@@ -83,7 +131,7 @@ class FileChannel {
     const FileWriting before = writing_;
     const auto read = read_number_file(in_.config().path, writing_);
     if (const double* const number = std::get_if<double>(&read))
-      in_.put(*number, arrival_clock_ns(), writing_.same(before));
+      in_.put(*number, arrival_clock_ns(), writing_ && writing_ == before);
     else
       in_.miss(std::get<ChannelFault>(read));
   }
@@ -200,12 +248,11 @@ struct ChannelSources::Impl {
   std::map<std::string, CanGroup> buses;
   std::string lcm_url;
   lcm_t* lcm = nullptr;
-  int stop_event = -1;
+  StoppableWait waiting;
   std::vector<std::thread> threads;
 
   ~Impl() {
     if (lcm != nullptr) lcm_destroy(lcm);
-    if (stop_event >= 0) close(stop_event);
   }
 
   static void received(const lcm_recv_buf_t* message, const char* channel, void* user) {
@@ -230,21 +277,19 @@ struct ChannelSources::Impl {
     constexpr std::int64_t kAgain_ns = 5'000'000'000;
     std::int64_t again_ns = monotonic_ns() + kAgain_ns;
     for (;;) {
-      std::int64_t now_ns = monotonic_ns();
+      const std::int64_t now_ns = monotonic_ns();
       std::int64_t next_ns = now_ns + 3'600'000'000'000;
       for (FileChannel& file : files) {
         if (file.due_ns() <= now_ns) file.read(now_ns);
         next_ns = std::min(next_ns, file.due_ns());
       }
-      now_ns = monotonic_ns();
       // Without a descriptor, the server of tcpq:// is away. LCM itself would wait for it in lcm_handle().
       const int socket = lcm != nullptr ? lcm_get_fileno(lcm) : -1;
       const bool away = socket < 0 && !messages.empty();
       if (away) next_ns = std::min(next_ns, again_ns);
-      pollfd wanted[2] = {{stop_event, POLLIN, 0}, {socket, POLLIN, 0}};
-      poll(wanted, 2, static_cast<int>(std::max<std::int64_t>(0, next_ns - now_ns + 999'999) / 1'000'000));
-      if ((wanted[0].revents & POLLIN) != 0) return;
-      if (wanted[1].revents != 0) lcm_handle(lcm);
+      const StoppableWait::Wake wake = waiting.wait(socket, POLLIN, next_ns);
+      if (wake == StoppableWait::Wake::stopped) return;
+      if (wake == StoppableWait::Wake::ready) lcm_handle(lcm);
       if (!away || monotonic_ns() < again_ns) continue;
       again_ns = monotonic_ns() + kAgain_ns;
       try {
@@ -289,11 +334,8 @@ ChannelSources::~ChannelSources() { stop(); }
 
 void ChannelSources::start() {
   if (!impl_->messages.empty()) impl_->subscribe();
-  if (!impl_->files.empty() || !impl_->messages.empty()) {
-    impl_->stop_event = eventfd(0, EFD_CLOEXEC);
-    if (impl_->stop_event < 0) throw std::runtime_error("no eventfd left");
+  if (!impl_->files.empty() || !impl_->messages.empty())
     impl_->threads.emplace_back([impl = impl_.get()] { impl->listen(); });
-  }
   for (auto& [interface, bus] : impl_->buses) {
     try {
       bus.transport->open({});
@@ -305,10 +347,7 @@ void ChannelSources::start() {
 }
 
 void ChannelSources::stop() {
-  if (impl_->stop_event >= 0) {
-    const std::uint64_t one = 1;
-    if (write(impl_->stop_event, &one, sizeof one) != sizeof one) return;
-  }
+  impl_->waiting.stop();
   for (auto& [interface, bus] : impl_->buses) bus.transport->stop();
   for (std::thread& thread : impl_->threads) thread.join();
   impl_->threads.clear();

@@ -8,10 +8,29 @@
 #include <limits>
 #include <memory>
 
-#include "daemon/channels/channel_fault.h"
 #include "drivers/flight/entry.h"
 
 namespace ifog {
+
+// Reason why a channel has no new value, as plain data for any thread; ChannelWatch makes the text.
+struct ChannelFault {
+  enum class Kind : std::uint8_t {
+    silent,        // nothing was received, or nothing more
+    unreadable,    // file: opening or reading failed with `error`
+    no_file,       // file: a folder, FIFO or device
+    empty,         // file: empty
+    no_number,     // file: not a single number
+    no_message,    // lcm: a message of a type without values
+    no_field,      // lcm: the message does not have the field
+    late,          // lcm: older than the last value
+    clock_behind,  // lcm: the sender's clock is behind by `error` seconds
+    impossible,    // the value is outside its possible range
+  };
+  Kind kind = Kind::silent;
+  int error = 0;  // errno; clock_behind: s
+
+  bool operator==(const ChannelFault&) const = default;
+};
 
 class ChannelTable {
  public:

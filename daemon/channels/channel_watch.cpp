@@ -7,91 +7,125 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <iterator>
+#include <system_error>
 #include <utility>
 
-#include "daemon/sensor/sensor_parts.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
 
+using Kind = ChannelFault::Kind;
+using Source = ChannelConfig::Source;
+
 // Delays before a faulty file is reported, for any allowed age; shorter before the first value, because the
 // name may be wrong.
 constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
 
-// Channels of the sensor's frames have no entry if the default age applies.
-ChannelConfig of_frame(const std::string& name, const std::vector<ChannelConfig>& configured) {
-  const auto found =
-      std::ranges::find_if(configured, [&](const ChannelConfig& channel) { return channel.name == name; });
-  if (found != configured.end()) return *found;
-  ChannelConfig out;
-  out.name = name;
-  return out;
+bool is_absent_bus(const ChannelConfig& channel) {
+  return channel.source == Source::can && if_nametoindex(channel.interface.c_str()) == 0;
+}
+
+std::string source_in_words(const ChannelConfig& channel) {
+  if (channel.source == Source::file) return printable(channel.path);
+  if (channel.source == Source::lcm) return "LCM channel " + in_quotes(channel.lcm_channel);
+  return "CAN interface " + in_quotes(channel.interface);
+}
+
+std::string fault_in_words(const ChannelConfig& channel, const ChannelFault& fault) {
+  const std::string expected = ", expected a file that holds one number";
+  const std::string value = channel.source == Source::can
+                                ? "signal " + in_quotes(channel.signal)
+                                : in_quotes(channel.field.empty() ? channel.name : channel.field);
+  if (is_absent_bus(channel)) return "is not there";
+  switch (fault.kind) {
+    case Kind::unreadable:
+      return "cannot read: " + std::generic_category().message(fault.error) + expected;
+    case Kind::no_file:
+      return "is no regular file" + expected;
+    case Kind::empty:
+      return "is empty" + expected;
+    case Kind::no_number:
+      return "holds something else" + expected;
+    case Kind::no_message:
+      return "what comes is no ifog.channel_t, ifog.rate_t or ifog.status_t";
+    case Kind::no_field:
+      return "its messages have no " + value;
+    case Kind::late:
+      return "what comes was measured before what is held, by its utime";
+    case Kind::clock_behind:
+      return "the clock that dates it is " + std::to_string(fault.error) +
+             " s behind this computer's: ages are counted from the newest that has come";
+    case Kind::impossible:
+      return (channel.source == Source::file ? "holds" : value + " is") +
+             " a number that the channel cannot have";
+    case Kind::silent:
+      break;
+  }
+  if (channel.source == Source::file) return "nothing was read" + expected;
+  return channel.source == Source::lcm ? "nothing comes" : "no frame with the " + value + " comes";
 }
 
 }  // namespace
 
-ChannelWatch::ChannelWatch(const SensorConfig& sensor)
-    : configured_(sensor.channels), outside_(outside_channels(sensor)), absent_(outside_.size()) {}
+std::string describe(const ChannelConfig& channel, const ChannelFault& fault) {
+  const std::string name = "channel " + in_quotes(channel.name) + ": ";
+  if (channel.source == Source::frame) return name + "the sensor's frames bring none";
+  return name + source_in_words(channel) + ": " + fault_in_words(channel, fault);
+}
+
+ChannelWatch::ChannelWatch(const SensorConfig& sensor, const std::vector<std::string>& channels) {
+  for (const std::string& name : channels) {
+    Watched& watched = channels_.emplace_back();
+    watched.config.name = name;
+    for (const ChannelConfig& each : sensor.channels)
+      if (each.name == name) watched = {.config = each, .configured = true};
+  }
+}
 
 std::vector<std::string> ChannelWatch::absent() {
   std::vector<std::string> out;
-  for (std::size_t place = 0; place < outside_.size(); ++place) {
-    const ChannelConfig& channel = outside_[place];
+  for (Watched& watched : channels_) {
     ChannelFault fault;
     struct stat info {};
-    if (channel.source == ChannelConfig::Source::file) {
-      if (stat(channel.path.c_str(), &info) != 0)
-        fault = {.kind = ChannelFault::Kind::unreadable, .error = errno};
+    if (watched.config.source == Source::file) {
+      if (stat(watched.config.path.c_str(), &info) != 0)
+        fault = {.kind = Kind::unreadable, .error = errno};
       else if (!S_ISREG(info.st_mode))
-        fault.kind = ChannelFault::Kind::no_file;
+        fault.kind = Kind::no_file;
     }
-    absent_[place] = fault != ChannelFault{} || (channel.source == ChannelConfig::Source::can &&
-                                                 if_nametoindex(channel.interface.c_str()) == 0);
-    if (absent_[place]) out.push_back(describe(channel, fault) + "; the channel has no value until it comes");
+    watched.reported = fault != ChannelFault{} || is_absent_bus(watched.config);
+    if (watched.reported)
+      out.push_back(describe(watched.config, fault) + "; the channel has no value until it comes");
   }
   return out;
-}
-
-bool ChannelWatch::is_configured(const std::string& name) const {
-  return std::ranges::any_of(configured_, [&](const ChannelConfig& channel) { return channel.name == name; });
 }
 
 std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const ChannelTable& outside) {
   std::vector<News> out;
   // Nothing is known before the sensor's first sample.
   if (status.samples_in == 0 || status.state != status_t::STATE_RUNNING) return out;
-  const std::size_t all = status.channel_name.size();
-  if (seen_.empty()) {
-    seen_.resize(all);
-    for (std::size_t place = 0; place < outside_.size(); ++place)
-      seen_[all - outside_.size() + place].reported = absent_[place];
-  }
-  for (std::size_t c = 0; c < all; ++c) {
-    const bool from_frame = c + outside_.size() < all;
-    const std::size_t place = from_frame ? 0 : c - (all - outside_.size());
-    const ChannelConfig channel =
-        from_frame ? of_frame(status.channel_name[c], configured_) : outside_[place];
-    const ChannelFault fault = from_frame ? ChannelFault{} : outside.fault(static_cast<int>(place));
-    Seen& seen = seen_[c];
-    if (fault.kind == ChannelFault::Kind::clock_behind && !std::exchange(seen.behind_reported, true))
+  int place = 0;  // among those from outside
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    Watched& seen = channels_[c];
+    const ChannelConfig& channel = seen.config;
+    const ChannelFault fault = channel.source == Source::frame ? ChannelFault{} : outside.fault(place++);
+    if (fault.kind == Kind::clock_behind && !std::exchange(seen.behind_reported, true))
       out.push_back({false, describe(channel, fault)});
     seen.looked_s += 1.0;
-    const bool faulty =
-        fault.kind != ChannelFault::Kind::silent && fault.kind != ChannelFault::Kind::clock_behind;
+    const bool faulty = fault.kind != Kind::silent && fault.kind != Kind::clock_behind;
     seen.faulty_s = faulty ? seen.faulty_s + 1.0 : 0.0;
     const double age_s = status.channel_age_s[c];
     const bool never = std::isinf(age_s);
     const bool old = !never && channel.max_age_s > 0.0 && age_s > channel.max_age_s;
     // A channel that the driver's frames may contain but do not is reported only if it is configured or a
     // correction needs it.
-    const bool wanted = !from_frame || is_configured(channel.name) || status.channel_stale > 0;
+    const bool wanted = seen.configured || status.channel_stale > 0;
     const bool awaited =
         never && wanted && seen.looked_s > (channel.max_age_s > 0.0 ? channel.max_age_s : kLasting_s);
-    const bool gone = never ? seen.faulty_s >= kFirst_s
-                            : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
-                                  age_s > kLasting_s;
+    const bool gone =
+        never ? seen.faulty_s >= kFirst_s
+              : channel.source == Source::file && seen.faulty_s >= kLasting_s && age_s > kLasting_s;
     // A report is valid until a value arrives.
     const bool missing = old || awaited || gone || (never && seen.reported);
     if (missing == seen.reported) continue;

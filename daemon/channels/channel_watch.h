@@ -12,6 +12,9 @@
 
 namespace ifog {
 
+// One line: the channel, its source, the fault, what was expected.
+std::string describe(const ChannelConfig& channel, const ChannelFault& fault);
+
 class ChannelWatch {
  public:
   struct News {
@@ -19,25 +22,22 @@ class ChannelWatch {
     std::string words;
   };
 
-  explicit ChannelWatch(const SensorConfig& sensor);
+  // channels: names of all channels, those from outside the sensor's frames at the end.
+  ChannelWatch(const SensorConfig& sensor, const std::vector<std::string>& channels);
 
   // Sources that do not exist before anything is opened (files, CAN interfaces); they may appear later.
   [[nodiscard]] std::vector<std::string> absent();
-  // status: of this second, with names and ages of the sensor's channels. outside: the channels from outside
-  // its frames, which are the last ones.
+  // status: of this second, with the channels' ages. outside: the channels from outside the frames.
   [[nodiscard]] std::vector<News> look(const status_t& status, const ChannelTable& outside);
 
  private:
-  struct Seen {
+  struct Watched {
+    ChannelConfig config{};
+    bool configured = false;                // else one of the frames, with the default age
     double looked_s = 0.0, faulty_s = 0.0;  // since the sensor's first sample; since a reason is known
     bool reported = false, behind_reported = false;
   };
-
-  [[nodiscard]] bool is_configured(const std::string& name) const;
-
-  std::vector<ChannelConfig> configured_, outside_;
-  std::vector<bool> absent_;  // of the outside channels, reported by absent()
-  std::vector<Seen> seen_;
+  std::vector<Watched> channels_;
 };
 
 }  // namespace ifog

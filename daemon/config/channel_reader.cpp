@@ -67,18 +67,14 @@ Limits read_limits(TableReader& in, double most, const ReadingContext& context) 
   return out;
 }
 
-ChannelConfig read_channel(const toml::table& table, const std::string& where, ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+ChannelConfig read_channel(const toml::table& table, ReadingContext& context) {
+  TableReader in(table, "sensor.channel", context.file, context.errors);
   ChannelConfig out;
   out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
   take(in.number("max_age_s", kNotNegative), out.max_age_s);
   out.limits = read_limits(in, kMostChannel, context);
-  const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
-  if (!source) {
-    if (!in.has("source"))
-      in.complain("source", ": missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\"");
-    return out;
-  }
+  const auto source = in.required_choice("source", {"frame", "can", "lcm", "file"});
+  if (!source) return out;
   if (*source == "frame") {
     out.source = ChannelConfig::Source::frame;
   } else {

@@ -55,9 +55,8 @@ bool good_name(const std::string& name) {
   });
 }
 
-FilterChoice read_filter(const toml::table& table, const std::string& where, double& start_up_s,
-                         ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+FilterChoice read_filter(const toml::table& table, double& start_up_s, ReadingContext& context) {
+  TableReader in(table, "sensor.filter", context.file, context.errors);
   FilterChoice out;
   for (const FilterSetting& setting : filter_table()) in.filter_setting(setting, out);
   take(in.number("start_up_s", {0.01, 3600.0}), start_up_s);
@@ -65,8 +64,8 @@ FilterChoice read_filter(const toml::table& table, const std::string& where, dou
   return out;
 }
 
-RealtimeConfig read_realtime(const toml::table& table, const std::string& where, ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+RealtimeConfig read_realtime(const toml::table& table, ReadingContext& context) {
+  TableReader in(table, "sensor.realtime", context.file, context.errors);
   RealtimeConfig out;
   take(in.integer("reader_priority", 0, 99), out.reader_priority);
   take(in.integer("filter_priority", 0, 99), out.filter_priority);
@@ -79,8 +78,8 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
   return out;
 }
 
-RecordConfig read_record(const toml::table& table, const std::string& where, ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+RecordConfig read_record(const toml::table& table, ReadingContext& context) {
+  TableReader in(table, "sensor.record", context.file, context.errors);
   RecordConfig out;
   const std::size_t errors_before = context.errors.size();
   out.folder = context.absolute(in.required_text("folder", "a folder, \"/var/lib/ifogd/record\""));
@@ -122,7 +121,7 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
   take(in.boolean("imu"), out.imu);
   take(in.boolean("powered_with_computer"), out.powered_with_computer);
   if (const toml::table* const transport = in.table("transport"))
-    out.transport = read_transport(*transport, "sensor.transport", context);
+    out.transport = read_transport(*transport, context);
   else if (!in.has("transport"))
     in.complain("transport", ": missing; expected a table [sensor.transport]");
   if (const toml::table* const options = in.table("options")) {
@@ -142,16 +141,15 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
                                          "; expected the same, or one of the two");
   }
   if (const toml::table* const filter = in.table("filter"))
-    out.filter = read_filter(*filter, "sensor.filter", out.start_up_s, context);
+    out.filter = read_filter(*filter, out.start_up_s, context);
   if (const toml::table* const realtime = in.table("realtime"))
-    out.realtime = read_realtime(*realtime, "sensor.realtime", context);
-  if (const toml::table* const record = in.table("record"))
-    out.record = read_record(*record, "sensor.record", context);
+    out.realtime = read_realtime(*realtime, context);
+  if (const toml::table* const record = in.table("record")) out.record = read_record(*record, context);
   for (const toml::table* const publish : in.tables("publish"))
-    out.publish.push_back(read_publish(*publish, "sensor.publish", context));
+    out.publish.push_back(read_publish(*publish, context));
   std::set<std::string> names;
   for (const toml::table* const channel : in.tables("channel")) {
-    out.channels.push_back(read_channel(*channel, "sensor.channel", context));
+    out.channels.push_back(read_channel(*channel, context));
     const std::string& name = out.channels.back().name;
     if (!name.empty() && !names.insert(name).second)
       TableReader(*channel, "sensor.channel", context.file, context.errors)
@@ -264,10 +262,7 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
   } catch (const std::runtime_error& error) {
     throw ConfigError(error.what());
   }
-  ReadingContext context;
-  context.file = path;
-  context.recorded = recorded;
-  context.folder = std::filesystem::absolute(path).parent_path();
+  ReadingContext context{path, std::filesystem::absolute(path).parent_path(), recorded, {}};
   Config out;
   out.file = path;
   TableReader in(root, "", path, context.errors);

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/config/published_type.h"
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
@@ -21,6 +20,19 @@
 #include "filters/settings/filter_settings.h"
 
 namespace ifog {
+
+// Types published for each sample besides rate_t.
+// Names of the types in the configuration.
+inline constexpr std::string_view kImuType = "ifog.imu_t", kInertialType = "ifog.inertial_t",
+                                  kInsType = "bot_core.ins_t", kMicrostrainType = "microstrain.ins_t",
+                                  kKvhBatchType = "bot_core.kvh_raw_imu_batch_t";
+
+// A type and its LCM channel.
+struct PublishedType {
+  std::string type, channel;
+
+  bool operator==(const PublishedType&) const = default;
+};
 
 struct TransportConfig {
   enum class Kind { serial, can, udp, tcp, file };

@@ -13,15 +13,12 @@ constexpr std::size_t kLongest = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
 
 }  // namespace
 
-PublishedType read_publish(const toml::table& table, const std::string& where, ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+PublishedType read_publish(const toml::table& table, ReadingContext& context) {
+  TableReader in(table, "sensor.publish", context.file, context.errors);
   PublishedType out;
-  if (!in.has("type"))
-    in.complain("type", R"(: missing; expected the name of a type, "bot_core.ins_t")");
-  else
-    take(in.choice("type", {kInsType.data(), kMicrostrainType.data(), kKvhBatchType.data(),
-                            kInertialType.data(), kImuType.data()}),
-         out.type);
+  take(in.required_choice("type", {kInsType.data(), kMicrostrainType.data(), kKvhBatchType.data(),
+                                   kInertialType.data(), kImuType.data()}),
+       out.type);
   out.channel = in.required_text("channel", "the name of an LCM channel");
   if (out.channel.size() > kLongest || out.channel != printable(out.channel))
     in.complain("channel", " = " + in_quotes(out.channel) + ": expected at most " + std::to_string(kLongest) +

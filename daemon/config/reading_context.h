@@ -38,10 +38,10 @@ struct ReadingContext {
   }
 };
 
-// where: key path of the table. Errors are added to the context.
-TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context);
-PublishedType read_publish(const toml::table& table, const std::string& where, ReadingContext& context);
-ChannelConfig read_channel(const toml::table& table, const std::string& where, ReadingContext& context);
+// Tables of a sensor. Errors are added to the context.
+TransportConfig read_transport(const toml::table& table, ReadingContext& context);
+PublishedType read_publish(const toml::table& table, ReadingContext& context);
+ChannelConfig read_channel(const toml::table& table, ReadingContext& context);
 // Reads minimum, maximum and max_step; values are within ±most.
 Limits read_limits(TableReader& in, double most, const ReadingContext& context);
 

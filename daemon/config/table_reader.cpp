@@ -32,6 +32,16 @@ std::string describe(Range range) {
   return "a number " + in_digits(range.least) + " ... " + in_digits(range.most);
 }
 
+std::string in_words(std::int64_t least, std::int64_t most) {
+  return "a whole number " + std::to_string(least) + " ... " + std::to_string(most);
+}
+
+std::string in_words(std::initializer_list<const char*> allowed) {
+  std::string out;
+  for (const char* const one : allowed) out += (out.empty() ? "\"" : " | \"") + std::string(one) + "\"";
+  return out;
+}
+
 }  // namespace
 
 std::string as_written(const toml::node& node) {
@@ -80,6 +90,10 @@ void TableReader::wrong(std::string_view key, const toml::node& node, const std:
   complain(key, " = " + printable(value) + ": expected " + expected);
 }
 
+void TableReader::missing(std::string_view key, const std::string& expected) {
+  complain(key, ": missing; expected " + expected);
+}
+
 std::optional<std::string> TableReader::text(std::string_view key) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;
@@ -89,11 +103,7 @@ std::optional<std::string> TableReader::text(std::string_view key) {
 }
 
 std::string TableReader::required_text(std::string_view key, const char* expected) {
-  if (!has(key)) {
-    asked_.emplace(key);
-    complain(key, std::string(": missing; expected ") + expected);
-    return "";
-  }
+  if (!has(key)) missing(key, expected);
   return text(key).value_or("");
 }
 
@@ -102,13 +112,16 @@ std::optional<std::string> TableReader::choice(std::string_view key,
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;
   const auto* const value = node->as_string();
-  std::string list;
-  for (const char* const one : allowed) {
+  for (const char* const one : allowed)
     if (value != nullptr && value->get() == one) return one;
-    list += (list.empty() ? "\"" : " | \"") + std::string(one) + "\"";
-  }
-  wrong(key, *node, list + (value == nullptr ? "" : did_you_mean(value->get(), allowed)));
+  wrong(key, *node, in_words(allowed) + (value == nullptr ? "" : did_you_mean(value->get(), allowed)));
   return std::nullopt;
+}
+
+std::optional<std::string> TableReader::required_choice(std::string_view key,
+                                                        std::initializer_list<const char*> allowed) {
+  if (!has(key)) missing(key, in_words(allowed));
+  return choice(key, allowed);
 }
 
 std::optional<double> TableReader::number(std::string_view key, Range range) {
@@ -130,17 +143,14 @@ std::optional<std::int64_t> TableReader::integer(std::string_view key, std::int6
   if (const auto* value = node->as_integer();
       value != nullptr && value->get() >= least && value->get() <= most)
     return value->get();
-  wrong(key, *node, "a whole number " + std::to_string(least) + " ... " + std::to_string(most));
+  wrong(key, *node, in_words(least, most));
   return std::nullopt;
 }
 
 std::optional<std::int64_t> TableReader::required_integer(std::string_view key, std::int64_t least,
                                                           std::int64_t most) {
-  if (has(key)) return integer(key, least, most);
-  asked_.emplace(key);
-  complain(key,
-           ": missing; expected a whole number " + std::to_string(least) + " ... " + std::to_string(most));
-  return std::nullopt;
+  if (!has(key)) missing(key, in_words(least, most));
+  return integer(key, least, most);
 }
 
 std::optional<bool> TableReader::boolean(std::string_view key) {

@@ -36,8 +36,10 @@ class TableReader {
   void filter_setting(const FilterSetting& setting, FilterChoice& choice);
   std::optional<std::vector<int>> integers(std::string_view key, int least, int most);
   std::optional<std::vector<std::string>> texts(std::string_view key);
-  // As text() and integer(), but an error if absent.
+  // As text(), choice() and integer(), but an error if absent.
   std::string required_text(std::string_view key, const char* expected);
+  std::optional<std::string> required_choice(std::string_view key,
+                                             std::initializer_list<const char*> allowed);
   std::optional<std::int64_t> required_integer(std::string_view key, std::int64_t least, std::int64_t most);
 
   // Table of this key; null if there is none, or another type (an error).
@@ -59,6 +61,7 @@ class TableReader {
   template <typename Element, typename Read>
   std::optional<std::vector<Element>> list(std::string_view key, const std::string& expected, Read&& read);
   const toml::node* find(std::string_view key);
+  void missing(std::string_view key, const std::string& expected);
   void wrong(std::string_view key, const toml::node& node, const std::string& expected);
 
   const toml::table& table_;

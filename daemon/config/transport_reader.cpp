@@ -73,15 +73,11 @@ FileSettings read_file(TableReader& in, const ReadingContext& context) {
 
 }  // namespace
 
-TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context) {
-  TableReader in(table, where, context.file, context.errors);
+TransportConfig read_transport(const toml::table& table, ReadingContext& context) {
+  TableReader in(table, "sensor.transport", context.file, context.errors);
   TransportConfig out;
-  const auto type = in.choice("type", {"serial", "can", "udp", "tcp", "file"});
-  if (!type) {
-    if (!in.has("type"))
-      in.complain("type", ": missing; expected \"serial\" | \"can\" | \"udp\" | \"tcp\" | \"file\"");
-    return out;
-  }
+  const auto type = in.required_choice("type", {"serial", "can", "udp", "tcp", "file"});
+  if (!type) return out;
   if (*type == "serial") {
     out.kind = TransportConfig::Kind::serial;
     out.serial = read_serial(in);

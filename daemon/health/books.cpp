@@ -3,32 +3,25 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <bit>
+#include <cstddef>
+
 namespace ifog {
-namespace {
-
-constexpr std::array kEntries{
-    &ReaderBooks::bytes_read,     &ReaderBooks::bytes_framed, &ReaderBooks::bytes_skipped,
-    &ReaderBooks::bytes_pending,  &ReaderBooks::frames_read,  &ReaderBooks::frames_good,
-    &ReaderBooks::frames_refused, &ReaderBooks::frames_other, &ReaderBooks::decoded,
-    &ReaderBooks::samples,        &ReaderBooks::repeated};
-
-}  // namespace
-
 void SharedBooks::write(const ReaderBooks& books) noexcept {
-  static_assert(sizeof(ReaderBooks) == kEntries.size() * sizeof(std::uint64_t), "every entry is shared");
+  const auto words = std::bit_cast<Words>(books);
   const std::uint32_t version = version_.load(std::memory_order_relaxed);
   version_.store(version + 1, std::memory_order_relaxed);
-  // Release and acquire on each entry instead of fences, which ThreadSanitizer does not support: a reader of
-  // a new entry also sees the odd version.
-  for (std::size_t i = 0; i < kEntries.size(); ++i)
-    entries_[i].store(books.*kEntries[i], std::memory_order_release);
+  // Release and acquire on each word instead of fences, which ThreadSanitizer does not support: a reader of
+  // a new word also sees the odd version.
+  for (std::size_t i = 0; i < words.size(); ++i) words_[i].store(words[i], std::memory_order_release);
   version_.store(version + 2, std::memory_order_release);
 }
 
 bool SharedBooks::try_read(ReaderBooks& out) const noexcept {
   const std::uint32_t before = version_.load(std::memory_order_acquire);
-  for (std::size_t i = 0; i < kEntries.size(); ++i)
-    out.*kEntries[i] = entries_[i].load(std::memory_order_acquire);
+  Words words;
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = words_[i].load(std::memory_order_acquire);
+  out = std::bit_cast<ReaderBooks>(words);
   return before % 2 == 0 && version_.load(std::memory_order_relaxed) == before;
 }
 
@@ -40,21 +33,24 @@ ReaderBooks SharedBooks::read() const noexcept {
 }
 
 std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter) {
-  if (reader.bytes_read != reader.bytes_framed + reader.bytes_skipped + reader.bytes_pending)
+  const TransportCounters& line = reader.line;
+  const ifog_driver_counters& driver = reader.driver;
+  const IncrementerCounts& counts = reader.counts;
+  if (line.bytes != driver.bytes_framed + driver.bytes_skipped + driver.bytes_pending)
     return fmt::format("the books do not balance: {} bytes read, {} in frames + {} skipped + {} pending",
-                       reader.bytes_read, reader.bytes_framed, reader.bytes_skipped, reader.bytes_pending);
-  const bool of_can = reader.frames_read > 0 || reader.frames_other > 0;
-  if (of_can && reader.frames_read != reader.frames_good + reader.frames_refused + reader.frames_other)
+                       line.bytes, driver.bytes_framed, driver.bytes_skipped, driver.bytes_pending);
+  const bool of_can = line.frames > 0 || driver.frames_other > 0;
+  if (of_can && line.frames != driver.frames_good + driver.frames_format + driver.frames_other)
     return fmt::format(
         "the books do not balance: {} CAN frames read, {} decoded + {} refused + {} none of the sensor's",
-        reader.frames_read, reader.frames_good, reader.frames_refused, reader.frames_other);
-  if (reader.decoded != reader.samples + reader.repeated)
+        line.frames, driver.frames_good, driver.frames_format, driver.frames_other);
+  if (reader.decoded != counts.samples + counts.repeated)
     return fmt::format("the books do not balance: {} samples decoded, {} accepted + {} repeated",
-                       reader.decoded, reader.samples, reader.repeated);
-  if (filter.samples != filter.sent + filter.failed + filter.merged || filter.samples > reader.samples)
+                       reader.decoded, counts.samples, counts.repeated);
+  if (filter.samples != filter.sent + filter.failed + filter.merged || filter.samples > counts.samples)
     return fmt::format(
         "the books do not balance: {} samples, {} of them filtered: {} sent + {} failed + {} merged",
-        reader.samples, filter.samples, filter.sent, filter.failed, filter.merged);
+        counts.samples, filter.samples, filter.sent, filter.failed, filter.merged);
   return "";
 }
 

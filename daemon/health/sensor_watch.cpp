@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ifog/status_t.hpp>
 
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -28,29 +29,16 @@ double blocks_between_alarms(std::size_t axes, double block_s, double share) {
 
 }  // namespace
 
-SensorWatch::Axis::Axis(double usual, double colour, double step)
-    : loud(usual), odd_neighbours(usual), follows(colour), steps(step) {}
-
 SensorWatch::SensorWatch(std::size_t axes, double sample_rate_hz)
     : block_samples_(std::max(kFewestSamples, std::round(kBlock_s * sample_rate_hz))),
-      period_s_(1.0 / sample_rate_hz) {
-  const double block_s = block_samples_ * period_s_;
-  const double cusum = std::log(blocks_between_alarms(axes, block_s, (1.0 - kForStep) / kCusums));
-  const double step = blocks_between_alarms(axes, block_s, kForStep);
-  axes_.assign(axes, Axis(cusum, cusum, step));
-}
+      period_s_(1.0 / sample_rate_hz),
+      cusum_(std::log(blocks_between_alarms(axes, block_samples_ * period_s_, (1.0 - kForStep) / kCusums))),
+      step_(blocks_between_alarms(axes, block_samples_ * period_s_, kForStep)),
+      axes_(axes, Axis(cusum_, step_)) {}
 
 void SensorWatch::renew() {
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    Axis& axis = axes_[a];
-    axis.blocks = axis.square = axis.correlation = axis.skipped = axis.turned = axis.bias_for = 0.0;
-    axis.at_block = before_.axis[a];
-    axis.loud.restart();
-    axis.odd_neighbours.restart();
-    axis.follows.restart();
-    axis.steps.forget();
-    axis.level = LevelNoise();
-  }
+  axes_.assign(axes_.size(), Axis(cusum_, step_));
+  for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].at_block = before_.axis[a];
   range_ = false;
   samples_ = seen_;
   out_of_range_ = seen_out_of_range_;
@@ -83,7 +71,7 @@ void SensorWatch::follow_motion(Axis& axis, const RestSums::Axis& now, const Res
   axis.turned += (now.moved_rate - before.moved_rate - moved * level) * period_s_;
   if (std::abs(axis.turned) <= kTurned) return;
   axis.level.forget_level();
-  axis.follows.break_off();
+  axis.last_innovation.reset();
   axis.steps.restart();
   axis.turned = 0.0;
 }
@@ -113,8 +101,8 @@ bool SensorWatch::test_noise(Axis& axis, double square, double correlation, doub
     if (loud) axis.louder += (louder - axis.louder) * (axis.louder == 0.0 ? 1.0 : kLatest);
     const bool strange =
         std::abs(correlation - axis.correlation) > std::max(kOddCorrelation, kOddErrors / std::sqrt(pairs));
-    axis.loud.take(loud);
-    axis.odd_neighbours.take(strange);
+    axis.loud.add(usual_log_ratio(loud));
+    axis.odd_neighbours.add(usual_log_ratio(strange));
     odd = loud || strange;
   }
   // Unusual blocks are not learned.
@@ -133,20 +121,21 @@ void SensorWatch::test_level(Axis& axis, double mean) {
   // Also while learning, because the variance of sums is learned too.
   const bool stepped = axis.steps.take(innovation);
   if (axis.level.blocks() < kLearned) return;
-  axis.follows.take(innovation.value);
+  if (axis.last_innovation) axis.follows.add(colour_log_ratio(*axis.last_innovation, innovation.value));
+  axis.last_innovation = innovation.value;
   if (!stepped) return;
   step_radps_ = axis.steps.step();
   axis.bias_for = kTellStep;
   axis.level.forget_level();
-  axis.follows.break_off();
+  axis.last_innovation.reset();
 }
 
 std::int32_t SensorWatch::noticed() const {
-  std::int32_t out = range_ ? kNoticedRange : 0;
+  std::int32_t out = range_ ? status_t::NOTICED_RANGE : 0;
   for (const Axis& axis : axes_) {
-    if (axis.loud.alarmed()) out |= kNoticedNoise;
-    if (axis.odd_neighbours.alarmed() || axis.follows.alarmed()) out |= kNoticedColour;
-    if (axis.bias_for > 0.0) out |= kNoticedBias;
+    if (axis.loud.alarmed()) out |= status_t::NOTICED_NOISE;
+    if (axis.odd_neighbours.alarmed() || axis.follows.alarmed()) out |= status_t::NOTICED_COLOUR;
+    if (axis.bias_for > 0.0) out |= status_t::NOTICED_BIAS;
   }
   return out;
 }
@@ -155,7 +144,7 @@ std::string SensorWatch::words(std::int32_t only) const {
   const std::int32_t now = noticed() & only;
   std::string out;
   const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
-  if ((now & kNoticedNoise) != 0) {
+  if ((now & status_t::NOTICED_NOISE) != 0) {
     double most = 0.0;
     for (const Axis& axis : axes_)
       if (axis.loud.alarmed()) most = std::max(most, axis.louder);
@@ -164,14 +153,14 @@ std::string SensorWatch::words(std::int32_t only) const {
         "then compare recordings with `ifog allan`",
         std::sqrt(most)));
   }
-  if ((now & kNoticedColour) != 0)
+  if ((now & status_t::NOTICED_COLOUR) != 0)
     add("innovations are no longer white: something acts on the sensor that its model does not know, run "
         "`ifog night`");
-  if ((now & kNoticedBias) != 0)
+  if ((now & status_t::NOTICED_BIAS) != 0)
     add(formatted(
         "rate at rest has stepped by %+.3g °/h: align again, and run `ifog night` if it was not turned",
         step_radps_ / kDegreePerHour));
-  if ((now & kNoticedRange) != 0)
+  if ((now & status_t::NOTICED_RANGE) != 0)
     add("a channel is outside the range of the model for over ten minutes: run `ifog night`, which fits it "
         "there");
   return out;

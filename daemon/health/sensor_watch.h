@@ -33,14 +33,6 @@
 
 namespace ifog {
 
-// NOTICED_… of status_t
-enum Noticed : std::int32_t {
-  kNoticedNoise = 1,
-  kNoticedColour = 2,
-  kNoticedBias = 4,
-  kNoticedRange = 8,
-};
-
 class SensorWatch {
  public:
   static constexpr double kAlarmEvery_s = 40.0 * 86400.0;
@@ -56,6 +48,7 @@ class SensorWatch {
   // Another model is in use: learning restarts.
   void renew();
 
+  // Bits NOTICED_… of status_t.
   [[nodiscard]] std::int32_t noticed() const;
   // What was noticed and what to do, one line; "" for nothing. only: mask.
   [[nodiscard]] std::string words(std::int32_t only = ~0) const;
@@ -64,13 +57,13 @@ class SensorWatch {
 
  private:
   struct Axis {
-    Axis(double usual, double colour, double step);
+    Axis(double cusum, double step) : loud(cusum), odd_neighbours(cusum), follows(cusum), steps(step) {}
     RestSums::Axis at_block{};               // sums at the start of the present block
     double blocks = 0.0;                     // learned
     double square = 0.0, correlation = 0.0;  // means over them
     double louder = 0.0;  // mean square / former value, of the latest noisy blocks; 0: none recently
-    UsualCusum loud, odd_neighbours;
-    ColourCusum follows;
+    Cusum loud, odd_neighbours, follows;
+    std::optional<double> last_innovation;  // of the block before, with variance 1
     StepTest steps;
     LevelNoise level;
     double skipped = 0.0;   // blocks since the last tested one
@@ -84,6 +77,7 @@ class SensorWatch {
   void follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const;
 
   double block_samples_, period_s_;
+  double cusum_, step_;  // thresholds
   std::vector<Axis> axes_;
   RestSums before_{};
   std::uint64_t samples_ = 0, out_of_range_ = 0;  // at the start of the present ten minutes

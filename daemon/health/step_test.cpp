@@ -39,11 +39,6 @@ double exceeded_per_block(double z, double s) {
 
 }  // namespace
 
-void StepTest::forget() noexcept {
-  restart();
-  spreads_ = {};
-}
-
 void StepTest::extend(Window& window, const LevelNoise::Innovation& innovation) noexcept {
   double left = 1.0;
   for (std::size_t i = 0; i < LevelNoise::kStates; ++i) left -= window.absorbed[i] *= innovation.keep[i];

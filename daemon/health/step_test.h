@@ -28,8 +28,6 @@ class StepTest {
   [[nodiscard]] double step() const noexcept { return step_; }
   // Starts new windows; keeps the variance of sums.
   void restart() noexcept { begun_ = 0; }
-  // Also forgets the variance of sums.
-  void forget() noexcept;
 
  private:
   struct Window {

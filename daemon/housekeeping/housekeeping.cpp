@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "daemon/channels/can_channel.h"
-#include "daemon/housekeeping/signals.h"
 #include "daemon/realtime/realtime.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
@@ -33,6 +32,20 @@ std::vector<std::string> axis_names(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.emplace_back(description.axis[i]);
   return out;
+}
+
+// Next signal, or 0 at `deadline_ns` of the monotonic clock. SIGHUP never hides an end.
+int wait_for_signal(std::int64_t deadline_ns) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  const timespec none{};
+  if (const int end = sigtimedwait(&signals, nullptr, &none); end > 0) return end;
+  sigaddset(&signals, SIGHUP);
+  const std::int64_t left = std::max<std::int64_t>(0, deadline_ns - monotonic_ns());
+  const timespec timeout{left / 1'000'000'000, left % 1'000'000'000};
+  return std::max(0, sigtimedwait(&signals, nullptr, &timeout));
 }
 
 }  // namespace
@@ -65,11 +78,12 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
       }
       StatusReport report(sensor.name, parts.channels, axis_names(description),
                           parts.pipeline->plan().facts.nominal_rate_hz);
+      ChannelWatch watch(sensor, parts.channels);
       sensors_.push_back(std::make_unique<Sensor>(Sensor{.config = sensor,
                                                          .parts = std::move(parts),
                                                          .report = std::move(report),
                                                          .log = make_log(sensor.name),
-                                                         .channels = ChannelWatch(sensor)}));
+                                                         .channels = std::move(watch)}));
       for (const std::string& absent : sensors_.back()->channels.absent())
         sensors_.back()->log->warn("{}", absent);
       for (const std::string& remark : sensors_.back()->parts.remarks)
@@ -118,12 +132,11 @@ bool Housekeeping::open_all() {
 void Housekeeping::start_all() {
   for (const auto& sensor : sensors_) {
     for (const std::string& effect : sensor->parts.left_out) sensor->log->warn("not corrected: {}", effect);
-    if (const NoiseMemory& noise = sensor->parts.noise; !noise.remark().empty())
-      sensor->log->log(noise.good() ? spdlog::level::info : spdlog::level::warn, "{}", noise.remark());
+    const NoiseMemory& noise = sensor->parts.noise;
+    tell(*sensor, noise.good() ? spdlog::level::info : spdlog::level::warn, noise.remark());
     try {
       if (sensor->parts.recorder != nullptr) sensor->parts.recorder->start();
-      if (const std::string missed = sensor->parts.pipeline->start(); !missed.empty())
-        sensor->log->warn("{}", missed);
+      tell(*sensor, spdlog::level::warn, sensor->parts.pipeline->start());
     } catch (const std::system_error& error) {
       throw std::runtime_error(
           "sensor \"" + printable(sensor->config.name) +
@@ -144,25 +157,31 @@ void Housekeeping::start_all() {
 }
 
 void Housekeeping::claim(const Sensor& sensor, const std::string& channel) {
-  if (claims_.emplace_back(config_.lcm_url, channel).in_use())
+  if (std::optional<Fd> claimed = claim_channel(config_.lcm_url, channel))
+    claims_.push_back(std::move(*claimed));
+  else
     sensor.log->warn(
         "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
         "a name or a channel of its own for each",
         channel);
 }
 
+void Housekeeping::tell(const Sensor& sensor, spdlog::level::level_enum level, const std::string& words) {
+  if (!words.empty()) sensor.log->log(level, "{}", words);
+}
+
 void Housekeeping::drain_events(Sensor& sensor) {
   Event event;
-  if (const std::string warning = sensor.parts.pipeline->take_transport_warning(); !warning.empty()) {
+  Notices& notices = sensor.parts.pipeline->reader().transport().notices();
+  if (const std::string warning = notices.take_warning(); !warning.empty()) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
   }
-  if (const std::string answers = sensor.parts.pipeline->take_transport_answers(); !answers.empty())
-    sensor.log->info("{}", answers);
+  tell(sensor, spdlog::level::info, notices.take_answers());
   if (sensor.parts.recorder != nullptr) {
     bool good = false;
-    if (const std::string message = sensor.parts.recorder->take_message(good); !message.empty())
-      sensor.log->log(good ? spdlog::level::info : spdlog::level::warn, "{}", message);
+    const std::string message = sensor.parts.recorder->take_message(good);
+    tell(sensor, good ? spdlog::level::info : spdlog::level::warn, message);
   }
   while (sensor.parts.pipeline->take_event(event)) {
     const bool fault = event.kind != EventKind::noise_learned && event.kind != EventKind::model_in_use;
@@ -188,7 +207,7 @@ void Housekeeping::publish(Sensor& sensor) {
 void Housekeeping::count_idle(Sensor& sensor) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   const char* const starved = pipeline.starved();
-  const std::uint64_t turns = pipeline.reader().counters().turns.value();
+  const std::uint64_t turns = sensor.snapshot.reader.turns;
   const bool filter_came = sensor.answered || pipeline.ended();
   const bool reader_came = turns != sensor.reader_turns || pipeline.ended();
   sensor.reader_turns = turns;
@@ -228,24 +247,22 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   }
   if (!fault_worded) sensor.log->warn("{}", message.fault);
   sensor.fault = message.fault;
-  if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
+  tell(sensor, spdlog::level::warn, sensor.report.moved());
   for (const ChannelWatch::News& news : sensor.channels.look(message, *sensor.parts.outside))
     sensor.log->log(news.good ? spdlog::level::info : spdlog::level::warn, "{}", news.words);
-  if (const std::string wrong = sensor.report.wrong_rate();
-      !wrong.empty() && !pipeline.reader().transport().holds_back())
-    sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
-  if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
-  if (const std::string frozen = sensor.report.newly_frozen(); !frozen.empty())
-    sensor.log->warn("{}", frozen);
-  if (const std::string news = sensor.report.newly_noticed(); !news.empty()) sensor.log->warn("{}", news);
+  if (!pipeline.reader().transport().holds_back())
+    tell(sensor, spdlog::level::warn, sensor.report.wrong_rate());
+  tell(sensor, spdlog::level::info, sensor.report.unseen_axes());
+  tell(sensor, spdlog::level::warn, sensor.report.newly_frozen());
+  tell(sensor, spdlog::level::warn, sensor.report.newly_noticed());
   publish(sensor);
   keep_noise(sensor, false);
 }
 
 void Housekeeping::keep_noise(Sensor& sensor, bool at_once) {
   if (!sensor.snapshot.learned) return;
-  const std::string complaint = sensor.parts.noise.keep(*sensor.snapshot.learned, monotonic_ns(), at_once);
-  if (!complaint.empty()) sensor.log->warn("{}", complaint);
+  tell(sensor, spdlog::level::warn,
+       sensor.parts.noise.keep(*sensor.snapshot.learned, monotonic_ns(), at_once));
 }
 
 const char* Housekeeping::stuck_thread(const Sensor& sensor) {
@@ -268,10 +285,10 @@ void Housekeeping::stop_all() {
       sensor->log->info(
           "recorder: {} deliveries, {} lost, {} bytes written, {} entries that the disk did not take",
           message.record_deliveries, message.record_lost, message.record_file_bytes,
-          recorder->entries_unwritten());
+          recorder->counts().entries_unwritten);
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
-    if (const auto beyond = sensor->parts.pipeline->reader().counters().values_beyond.value(); beyond > 0)
+    if (const auto beyond = sensor->snapshot.reader.driver.values_beyond; beyond > 0)
       sensor->log->info("{} values beyond the range that the file states: kept", beyond);
   }
 }

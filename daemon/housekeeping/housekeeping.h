@@ -15,7 +15,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
-#include "daemon/publish/channel_claim.h"
+#include "daemon/publish/publisher.h"
 #include "daemon/state/running_mark.h"
 
 namespace ifog {
@@ -69,6 +69,8 @@ class Housekeeping {
   void start_all();
   // Logs if another process uses the channel.
   void claim(const Sensor& sensor, const std::string& channel);
+  // Logs the words, unless there are none.
+  static void tell(const Sensor& sensor, spdlog::level::level_enum level, const std::string& words);
   void drain_events(Sensor& sensor);
   void report_second(Sensor& sensor, double interval_s);
   // Counts seconds without progress of a thread.
@@ -93,7 +95,7 @@ class Housekeeping {
   Config config_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<ChannelClaim> claims_;  // on the sensors' LCM channels
+  std::vector<Fd> claims_;  // on the sensors' LCM channels
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   RunningMark mark_;

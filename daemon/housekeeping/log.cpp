@@ -27,16 +27,14 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
     const std::string name(message.logger_name.begin(), message.logger_name.end());
-    const bool of_sensor = name != kDaemon;
-    std::string text = "MESSAGE=" + (of_sensor ? name + ": " : "");
-    text.append(message.payload.begin(), message.payload.end());
-    std::string level = "PRIORITY=" + std::to_string(kPriorities.at(static_cast<std::size_t>(message.level)));
-    std::string identifier = "SYSLOG_IDENTIFIER=ifogd";
-    std::string sensor = "IFOG_SENSOR=" + name;
-    std::array<iovec, 4> fields{iovec{text.data(), text.size()}, iovec{level.data(), level.size()},
-                                iovec{identifier.data(), identifier.size()},
-                                iovec{sensor.data(), sensor.size()}};
-    sd_journal_sendv(fields.data(), of_sensor ? 4 : 3);
+    const std::string text(message.payload.begin(), message.payload.end());
+    const int priority = kPriorities.at(static_cast<std::size_t>(message.level));
+    if (name == kDaemon)
+      sd_journal_send("MESSAGE=%s", text.c_str(), "PRIORITY=%i", priority, "SYSLOG_IDENTIFIER=ifogd",
+                      nullptr);
+    else
+      sd_journal_send("MESSAGE=%s: %s", name.c_str(), text.c_str(), "PRIORITY=%i", priority,
+                      "SYSLOG_IDENTIFIER=ifogd", "IFOG_SENSOR=%s", name.c_str(), nullptr);
   }
   void flush_() override {}
 };

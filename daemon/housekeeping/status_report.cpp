@@ -27,8 +27,7 @@ constexpr const char* kMixed =
 
 std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
 
-std::string fault_of(const Reader& reader) {
-  const Transport& transport = reader.transport();
+std::string fault_of(const Transport& transport, std::uint64_t bytes_at_end) {
   const TransportFault fault = transport.fault();
   const std::string words =
       fault.what == nullptr
@@ -37,8 +36,8 @@ std::string fault_of(const Reader& reader) {
   if (transport.state() != TransportState::open && transport.reason() != 0)
     return transport.name() + ": " + std::strerror(transport.reason()) +
            (words.empty() || fault.line > 0 ? "" : " (" + words + ")");
-  if (const std::uint64_t left = reader.counters().bytes_at_end.value(); left != 0)
-    return transport.name() + ": ends within a frame, its last " + std::to_string(left) +
+  if (bytes_at_end != 0)
+    return transport.name() + ": ends within a frame, its last " + std::to_string(bytes_at_end) +
            " bytes are no whole one (is the file cut off?)";
   if (fault.what == nullptr) return "";
   return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + words;
@@ -63,7 +62,7 @@ StatusReport::StatusReport(std::string sensor, std::vector<std::string> channels
   before_ = now_;
 }
 
-std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
+std::int32_t StatusReport::state_of(const Pipeline& pipeline, const ReaderBooks& read) const {
   const Transport& transport = pipeline.reader().transport();
   switch (transport.state()) {
     case TransportState::gone:
@@ -71,13 +70,13 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::ended:
       // A fault at the end means a truncated or damaged file, or another sensor's.
       if (nothing_in_file(pipeline) || transport.reason() != 0 || transport.fault().what != nullptr ||
-          pipeline.reader().counters().bytes_at_end.value() != 0)
+          read.bytes_at_end != 0)
         return status_t::STATE_FAILED;
       return status_t::STATE_ENDED;
     case TransportState::open:
       break;
   }
-  if (samples_.mixed) return status_t::STATE_NO_DATA;
+  if (read.mixed != 0) return status_t::STATE_NO_DATA;
   const std::int64_t since_ns = std::max(samples_.first_look_ns, samples_.last_ns);
   if (static_cast<double>(monotonic_ns() - since_ns) * 1e-9 > silence_s(nominal_rate_hz_))
     return status_t::STATE_NO_DATA;
@@ -86,26 +85,24 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
 }
 
 // From the reader, so it does not depend on the filter's answer. A repeated frame is no sample.
-void StatusReport::look_for_samples(const ReaderCounters& reader) {
-  const std::uint64_t accepted = reader.samples.value(), decoded = accepted + reader.repeated.value();
+void StatusReport::look_for_samples(const ReaderBooks& read) {
   if (samples_.first_look_ns == 0) samples_.first_look_ns = monotonic_ns();
-  const bool came = std::exchange(samples_.decoded, decoded) != decoded;
-  samples_.news = std::exchange(samples_.accepted, accepted) != accepted;
+  const bool came = now_.samples_decoded != before_.samples_decoded;
+  samples_.news = now_.samples_in != before_.samples_in;
   if (samples_.news) samples_.last_ns = monotonic_ns();
   samples_.seconds += samples_.news ? 1 : 0;
-  samples_.axes_seen = reader.axes_seen.load(std::memory_order_relaxed);
+  samples_.axes_seen = read.axes_seen;
   samples_.frozen_before = samples_.frozen;
   const bool long_ago =
       samples_.last_ns != 0 &&
       static_cast<double>(monotonic_ns() - samples_.last_ns) * 1e-9 > silence_s(nominal_rate_hz_);
-  samples_.mixed = reader.mixed.load(std::memory_order_relaxed);
-  samples_.frozen = long_ago && !samples_.mixed && !samples_.news && (came || samples_.frozen);
+  samples_.frozen = long_ago && read.mixed == 0 && !samples_.news && (came || samples_.frozen);
 }
 
-std::string StatusReport::fault_of_samples() {
+std::string StatusReport::fault_of_samples(bool mixed) {
   const bool in_vain = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0;
   in_vain_ = in_vain ? in_vain_ + 1 : 0;
-  if (samples_.mixed) return kMixed;
+  if (mixed) return kMixed;
   if (samples_.frozen) return kFrozen;
   if (in_vain_ < kInVain) return "";
   return std::string(now_.frames_read > 0 ? "CAN frames" : "bytes") +
@@ -121,53 +118,46 @@ bool StatusReport::nothing_in_file(const Pipeline& pipeline) const {
          now_.frames_good + now_.samples_decoded == 0;
 }
 
-// Balanced counters, from the moment of the filter's snapshot.
-void StatusReport::take_books(const FilterSnapshot& snapshot) {
-  const ReaderBooks& read = snapshot.reader;
-  now_.bytes_read = as_signed(read.bytes_read);
-  now_.bytes_framed = as_signed(read.bytes_framed);
-  now_.bytes_skipped = as_signed(read.bytes_skipped);
-  now_.bytes_pending = as_signed(read.bytes_pending);
-  now_.frames_read = as_signed(read.frames_read);
-  now_.frames_other = as_signed(read.frames_other);
-  now_.frames_good = as_signed(read.frames_good);
-  now_.frames_format = as_signed(read.frames_refused);
+// From the moment of the filter's snapshot, so they balance.
+void StatusReport::take_books(const ReaderBooks& read, const FilterBooks& filtered) {
+  now_.bytes_read = as_signed(read.line.bytes);
+  now_.bytes_framed = as_signed(read.driver.bytes_framed);
+  now_.bytes_skipped = as_signed(read.driver.bytes_skipped);
+  now_.bytes_pending = as_signed(read.driver.bytes_pending);
+  now_.frames_read = as_signed(read.line.frames);
+  now_.frames_other = as_signed(read.driver.frames_other);
+  now_.frames_good = as_signed(read.driver.frames_good);
+  now_.frames_format = as_signed(read.driver.frames_format);
+  now_.frames_crc = as_signed(read.driver.frames_crc);
+  now_.frames_repeated = as_signed(read.driver.frames_repeated);
+  now_.log_faults = as_signed(read.line.malformed);
+  now_.kernel_drops = as_signed(read.line.kernel_drops);
+  now_.can_error_frames = as_signed(read.line.error_frames);
+  now_.reopened = as_signed(read.line.reopened);
   now_.samples_decoded = as_signed(read.decoded);
-  now_.samples_in = as_signed(read.samples);
-  now_.samples_repeated = as_signed(read.repeated);
-  now_.samples_waiting = as_signed(read.samples - snapshot.books.samples);
-  now_.samples_published = as_signed(snapshot.books.sent);
-  now_.samples_merged = as_signed(snapshot.books.merged);
-  now_.lcm_failures = as_signed(snapshot.books.failed);
-}
-
-void StatusReport::take_line(const TransportCounters& line) {
-  now_.log_faults = as_signed(line.malformed);
-  now_.kernel_drops = as_signed(line.kernel_drops);
-  now_.can_error_frames = as_signed(line.error_frames);
-  now_.reopened = as_signed(line.reopened);
-}
-
-void StatusReport::take_counters(const ReaderCounters& reader, const FilterCounters& filter) {
-  now_.frames_crc = as_signed(reader.frames_crc.value());
-  now_.frames_repeated = as_signed(reader.frames_repeated.value());
-  now_.samples_incomplete = as_signed(reader.samples_incomplete.value());
-  now_.sequence_gaps = as_signed(reader.gaps.value());
-  now_.sequence_missing = as_signed(reader.missing.value());
-  now_.stood_back = as_signed(reader.stood_back.value() + filter.stood_back.value());
-  now_.invalid_samples = as_signed(reader.invalid.value());
-  now_.saturated_samples = as_signed(reader.saturated.value());
-  now_.implausible_samples = as_signed(reader.implausible.value());
-  now_.channel_drops = as_signed(reader.channel_drops.value());
-  now_.channel_implausible = as_signed(reader.channel_implausible.value());
-  now_.channel_stale = as_signed(filter.channel_stale.value());
-  now_.out_of_range = as_signed(filter.out_of_range.value());
-  now_.corrections_refused = as_signed(filter.corrections_refused.value());
-  now_.imu_failures = as_signed(filter.imu_failures.value());
-  now_.filter_resets = as_signed(filter.filter_resets.value());
-  now_.clock_offset_ppm = reader.clock_offset_ppm.load(std::memory_order_relaxed);
-  interval_error_before_ =
-      std::exchange(interval_error_, reader.interval_error.load(std::memory_order_relaxed));
+  now_.samples_in = as_signed(read.counts.samples);
+  now_.samples_repeated = as_signed(read.counts.repeated);
+  now_.samples_incomplete = as_signed(read.driver.samples_incomplete);
+  now_.sequence_gaps = as_signed(read.counts.gaps);
+  now_.sequence_missing = as_signed(read.counts.missing);
+  now_.invalid_samples = as_signed(read.counts.invalid);
+  now_.saturated_samples = as_signed(read.counts.saturated);
+  now_.implausible_samples = as_signed(read.counts.implausible);
+  now_.channel_drops = as_signed(read.channel_drops);
+  now_.channel_implausible =
+      as_signed(read.counts.channel_implausible + read.driver.values_refused + read.channel_refused);
+  now_.clock_offset_ppm = read.clock_offset_ppm;
+  interval_error_before_ = std::exchange(interval_error_, read.interval_error);
+  now_.samples_waiting = as_signed(read.counts.samples - filtered.samples);
+  now_.samples_published = as_signed(filtered.sent);
+  now_.samples_merged = as_signed(filtered.merged);
+  now_.lcm_failures = as_signed(filtered.failed);
+  now_.imu_failures = as_signed(filtered.imu_failures);
+  now_.channel_stale = as_signed(filtered.channel_stale);
+  now_.out_of_range = as_signed(filtered.out_of_range);
+  now_.corrections_refused = as_signed(filtered.corrections_refused);
+  now_.filter_resets = as_signed(filtered.filter_resets);
+  now_.stood_back = as_signed(read.stood_back + filtered.stood_back);
 }
 
 void StatusReport::take_health(const FilterSnapshot& snapshot) {
@@ -194,33 +184,33 @@ void StatusReport::take_health(const FilterSnapshot& snapshot) {
   }
 }
 
-const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s) {
+const status_t& StatusReport::update(const Pipeline& pipeline, const FilterSnapshot& snapshot,
+                                     double interval_s) {
+  const Transport& transport = pipeline.reader().transport();
+  const ReaderBooks& read = snapshot.reader;
   before_ = now_;
   now_.utime = realtime_ns() / 1000;
   now_.model = snapshot.model.data();
   now_.model_since = snapshot.model_since_ns / 1000;
-  take_books(snapshot);
-  now_.fault = imbalance(snapshot.reader, snapshot.books);
-  look_for_samples(pipeline.reader().counters());
+  take_books(read, snapshot.books);
+  now_.fault = imbalance(read, snapshot.books);
+  look_for_samples(read);
   // A fault in the data may be an old one.
-  if (now_.fault.empty() && pipeline.reader().transport().state() == TransportState::open)
-    now_.fault = fault_of_samples();
-  if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
+  if (now_.fault.empty() && transport.state() == TransportState::open)
+    now_.fault = fault_of_samples(read.mixed != 0);
+  if (now_.fault.empty()) now_.fault = fault_of(transport, read.bytes_at_end);
   if (now_.fault.empty() && nothing_in_file(pipeline))
-    now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
+    now_.fault = transport.name() + ": ended, and no frame of the sensor was in its " +
                  (now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
                                        : std::to_string(now_.bytes_read) + " bytes") +
                  " (is it this driver's, with these options?)";
-  take_line(pipeline.reader().transport().counters());
-  take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
-  watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
-              pipeline.filter().counters().out_of_range.value());
+  watch_.take(snapshot.rest, snapshot.books.sent, snapshot.books.out_of_range);
   now_.noticed = watch_.noticed();
   now_.notice = watch_.words();
   now_.ring_overflows = as_signed(pipeline.queue().overflows());
   now_.events_lost = as_signed(pipeline.events_lost());
-  now_.state = state_of(pipeline);
+  now_.state = state_of(pipeline, read);
   if (interval_s > 0.0) {
     now_.input_rate_hz = input_rate_.of(now_.samples_in, interval_s, nominal_rate_hz_);
     now_.output_rate_hz = output_rate_.of(now_.samples_published, interval_s, nominal_rate_hz_);
@@ -229,12 +219,12 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
 }
 
 void StatusReport::update(Recorder& recorder) {
-  const TapeCounters& tape = recorder.tape().counters();
-  now_.record_deliveries = as_signed(tape.deliveries.value());
-  now_.record_lost = as_signed(recorder.lost_deliveries());
-  now_.record_lost_bytes = as_signed(recorder.lost_bytes());
-  now_.record_file_bytes = as_signed(recorder.file_bytes());
-  now_.record_removed = as_signed(recorder.files_removed());
+  const Recorder::Counts counts = recorder.counts();
+  now_.record_deliveries = as_signed(recorder.tape().counters().deliveries.value());
+  now_.record_lost = as_signed(counts.lost.deliveries);
+  now_.record_lost_bytes = as_signed(counts.lost.bytes);
+  now_.record_file_bytes = as_signed(counts.file_bytes);
+  now_.record_removed = as_signed(counts.files_removed);
 }
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
@@ -257,7 +247,7 @@ std::string StatusReport::wrong_rate() const {
   const double rate_hz = nominal_rate_hz_ / (1.0 + interval_error_), off = rate_hz / nominal_rate_hz_ - 1.0;
   return formatted(
       "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
-      "rate, are %.3g %% too %s",
+      "rate, are %.3g %% too %s: is rate_hz of its options (or nominal_rate_hz) that of the device?",
       rate_hz, nominal_rate_hz_, 100.0 * std::abs(off), off < 0.0 ? "small" : "large");
 }
 

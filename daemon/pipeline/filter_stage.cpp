@@ -41,7 +41,7 @@ FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& f
 bool FilterStage::step() noexcept {
   const Increment* const in = queue_.front();
   if (in == nullptr) return false;
-  if (exchange_.exchange(counters_.device_samples.value(), chain_)) adopted(in->sequence);
+  if (exchange_.exchange(answer_.now.books.samples, chain_)) adopted(in->sequence);
   process(*in);
   queue_.pop();
   return true;
@@ -77,7 +77,7 @@ void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t rest_ns = share_.rest_ns(now_ns, [&] { return now_ns - slept_ns - rested_ns_; });
   if (rest_ns == 0) return;
-  counters_.stood_back.add(1);
+  ++answer_.now.books.stood_back;
   std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
   rested_ns_ += rest_ns;
 }
@@ -86,6 +86,7 @@ void FilterStage::process(const Increment& in) noexcept {
   chain_.process(in, out_);
   if (answer_.now.model_since_ns == 0) answer_.now.model_since_ns = in.utime_ns;
   const ChainParts& parts = chain_.parts();
+  FilterBooks& books = answer_.now.books;
   const bool sent =
       output_.publisher->publish(output_.channel.c_str(), output_.encoder.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) answer_.now.latency.add(arrival_clock_ns() - in.arrival_ns);
@@ -94,22 +95,19 @@ void FilterStage::process(const Increment& in) noexcept {
     if (message.empty()) continue;
     const bool also_sent = output_.publisher->publish(each.channel.c_str(), message);
     each.encoder->sent(also_sent);
-    if (!also_sent) counters_.imu_failures.add(1);
+    if (!also_sent) ++books.imu_failures;
   }
-  counters_.device_samples.add(in.samples);
-  counters_.merged.add(in.samples - 1);
-  if (sent) {
-    counters_.published.add(1);
-  } else {
-    if (counters_.lcm_failures.value() == 0)
-      events_.report({.kind = EventKind::publish_failed, .sequence = in.sequence});
-    counters_.lcm_failures.add(1);
-  }
-  if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) counters_.channel_stale.add(1);
-  if ((out_.compensator_flags & kOutOfRange) != 0) counters_.out_of_range.add(1);
-  if ((out_.flags & kNotCompensated) != 0) counters_.corrections_refused.add(1);
+  books.samples += in.samples;
+  books.merged += in.samples - 1;
+  if (sent)
+    ++books.sent;
+  else if (books.failed++ == 0)
+    events_.report({.kind = EventKind::publish_failed, .sequence = in.sequence});
+  if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) ++books.channel_stale;
+  if ((out_.compensator_flags & kOutOfRange) != 0) ++books.out_of_range;
+  if ((out_.flags & kNotCompensated) != 0) ++books.corrections_refused;
   if ((out_.estimate.flags & kRestarted) != 0) {
-    counters_.filter_resets.add(1);
+    ++books.filter_resets;
     events_.report({.kind = EventKind::divergence, .sequence = in.sequence});
   }
   if (!noise_known_ && parts.noise_known()) {
@@ -151,7 +149,7 @@ void FilterStage::adopted(std::uint64_t sequence) noexcept {
   // A reload with the same model does not count as another one.
   if (chain_.parts().model_identity() != answer_.now.model.data()) answer_.now.model_since_ns = 0;
   noise_known_ = chain_.parts().noise_known();
-  counters_.filter_resets.add(1);
+  ++answer_.now.books.filter_resets;
   events_.report({.kind = EventKind::model_in_use, .sequence = sequence});
 }
 
@@ -162,10 +160,6 @@ bool FilterStage::answer() noexcept {
   const ChainParts& parts = chain_.parts();
   answer_.now.health = chain_.health();
   answer_.now.learned = parts.learned();
-  answer_.now.books = {.samples = counters_.device_samples.value(),
-                       .sent = counters_.published.value(),
-                       .failed = counters_.lcm_failures.value(),
-                       .merged = counters_.merged.value()};
   // After the filter's own, so that everything received is in the reader's.
   for (int tries = 0; !reader_books_.try_read(answer_.now.reader); relax())
     if (++tries == kTries) return false;

@@ -15,15 +15,13 @@
 
 #include "daemon/health/books.h"
 #include "daemon/health/rest_sums.h"
-#include "daemon/pipeline/event_queue.h"
+#include "daemon/pipeline/event.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/parts_exchange.h"
 #include "daemon/pipeline/processor_share.h"
-#include "daemon/publish/inertial_encoder.h"
+#include "daemon/publish/encoders.h"
 #include "daemon/publish/publisher.h"
-#include "daemon/publish/rate_encoder.h"
 #include "daemon/sensor/duration_histogram.h"
-#include "drivers/transport/counter.h"
 #include "filters/allan/streaming.h"
 #include "filters/chain/signal_chain.h"
 
@@ -51,12 +49,6 @@ struct FilterSnapshot {
   double allan_period_s = 0.0;
   int allan_octaves = 0;
   std::array<std::array<double, StreamingAllan::kOctaves>, kMaxAxes> allan_radps{};
-};
-
-struct FilterCounters {
-  Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
-  Counter corrections_refused, merged, imu_failures;
-  Counter stood_back;  // number of pauses, see ProcessorShare
 };
 
 class FilterStage {
@@ -87,7 +79,6 @@ class FilterStage {
   bool ask() noexcept;
   // True: `out` has the requested snapshot.
   bool take_snapshot(FilterSnapshot& out) noexcept;
-  [[nodiscard]] const FilterCounters& counters() const noexcept { return counters_; }
 
  private:
   enum class Ask : std::uint32_t { none, asked, answered };
@@ -128,7 +119,6 @@ class FilterStage {
     std::atomic<bool> finished{false};  // the last sample was processed
   } answer_;
   PartsExchange exchange_;
-  FilterCounters counters_;
   ProcessorShare share_;
   std::int64_t rested_ns_ = 0;
 };

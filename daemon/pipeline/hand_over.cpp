@@ -46,7 +46,6 @@ void HandOver::delivered() noexcept {
     too_long_in_a_row_ = 0;
     return;
   }
-  too_long_.add(1);
   if (too_long_in_a_row_ > 0)
     left_to_filter_ = kShortestPause << std::min(too_long_in_a_row_ - 1, kDoublings);
   ++too_long_in_a_row_;

@@ -26,9 +26,8 @@ class HandOver {
   // For the reader thread, after each delivery.
   void delivered() noexcept;
 
-  // For any thread: deliveries processed by the reader, and those of them that took too long.
+  // For any thread: deliveries processed by the reader.
   [[nodiscard]] std::uint64_t done_here() const noexcept { return done_here_.value(); }
-  [[nodiscard]] std::uint64_t too_long() const noexcept { return too_long_.value(); }
 
  private:
   IncrementQueue& queue_;
@@ -37,7 +36,7 @@ class HandOver {
   const bool direct_;
   std::uint64_t left_to_filter_ = 0;  // number of further deliveries
   int too_long_in_a_row_ = 0;
-  Counter done_here_, too_long_;
+  Counter done_here_;
 };
 
 }  // namespace ifog

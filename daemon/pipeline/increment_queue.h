@@ -51,12 +51,9 @@ class IncrementQueue {
   // Any thread: wakes a sleeping consumer.
   void notify() noexcept;
 
-  [[nodiscard]] std::uint64_t overflows() const noexcept {
-    return overflows_.value();
-  }  // number of overflows
-  [[nodiscard]] std::uint64_t merged() const noexcept {
-    return merged_.value();
-  }  // samples merged into others
+  // Number of overflows, and of samples merged into others.
+  [[nodiscard]] std::uint64_t overflows() const noexcept { return overflows_.value(); }
+  [[nodiscard]] std::uint64_t merged() const noexcept { return merged_.value(); }
 
  private:
   bool place_waiting() noexcept;

@@ -12,7 +12,6 @@
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/reader.h"
 #include "daemon/realtime/realtime.h"
-#include "daemon/realtime/thread_watch.h"
 
 namespace ifog {
 
@@ -55,10 +54,6 @@ class Pipeline {
   // For one thread, once a second: "reader" or "filter" if that thread was ready but got no processor time
   // since the last call; else null.
   [[nodiscard]] const char* starved();
-  // Missing features of the transport, once; "" if nothing is new.
-  std::string take_transport_warning() { return reader_.transport().notices().take_warning(); }
-  // The device's answers to its set-up, likewise.
-  std::string take_transport_answers() { return reader_.transport().notices().take_answers(); }
   // Next event of either thread.
   bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }
   [[nodiscard]] std::uint64_t events_lost() const noexcept {

@@ -46,8 +46,7 @@ void Reader::take(const ifog_sample& sample) noexcept {
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = links_.queue.next();
   const bool complete = incrementer_.next(reading_, increment);
-  now_.samples = incrementer_.counts().samples;
-  now_.repeated = incrementer_.counts().repeated;
+  now_.counts = incrementer_.counts();
   // Before the filter can have it: these accounts must include what the filter has received.
   links_.books.write(now_);
   if (!complete) return;
@@ -86,38 +85,18 @@ void Reader::tell_beyond(const ifog_driver_counters& driver) noexcept {
   links_.events.report(event);
 }
 
-void Reader::publish_counters() {
-  const IncrementerCounts& counts = incrementer_.counts();
-  counters_.samples.set(counts.samples);
-  counters_.gaps.set(counts.gaps);
-  counters_.missing.set(counts.missing);
-  counters_.invalid.set(counts.invalid);
-  counters_.repeated.set(counts.repeated);
-  counters_.saturated.set(counts.saturated);
-  counters_.implausible.set(counts.implausible);
-  counters_.axes_seen.store(incrementer_.axes_seen(), std::memory_order_relaxed);
-  counters_.mixed.store(incrementer_.mixed(), std::memory_order_relaxed);
-  counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
-  counters_.interval_error.store(incrementer_.interval_error(), std::memory_order_relaxed);
-  const ifog_driver_counters driver = driver_.counters();
-  if (driver.values_beyond != 0 && !std::exchange(reported_.beyond, true)) tell_beyond(driver);
-  counters_.values_beyond.set(driver.values_beyond);
-  counters_.frames_crc.set(driver.frames_crc);
-  counters_.bytes_skipped.set(driver.bytes_skipped);
-  counters_.frames_repeated.set(driver.frames_repeated);
-  counters_.samples_incomplete.set(driver.samples_incomplete);
-  counters_.channel_implausible.set(counts.channel_implausible + driver.values_refused +
-                                    (outside_ != nullptr ? outside_->refused() : 0));
-  counters_.channel_drops.set(outside_ != nullptr ? outside_->drops() : 0);
-  const TransportCounters line = transport_->counters();
-  now_.bytes_read = line.bytes;
-  now_.bytes_framed = driver.bytes_framed;
-  now_.bytes_skipped = driver.bytes_skipped;
-  now_.bytes_pending = driver.bytes_pending;
-  now_.frames_read = line.frames;
-  now_.frames_good = driver.frames_good;
-  now_.frames_refused = driver.frames_format;
-  now_.frames_other = driver.frames_other;
+void Reader::publish_books() {
+  now_.axes_seen = incrementer_.axes_seen();
+  now_.mixed = incrementer_.mixed() ? 1 : 0;
+  now_.clock_offset_ppm = incrementer_.clock_offset_ppm();
+  now_.interval_error = incrementer_.interval_error();
+  now_.driver = driver_.counters();
+  if (now_.driver.values_beyond != 0 && !std::exchange(reported_.beyond, true)) tell_beyond(now_.driver);
+  if (outside_ != nullptr) {
+    now_.channel_refused = outside_->refused();
+    now_.channel_drops = outside_->drops();
+  }
+  now_.line = transport_->counters();
   links_.books.write(now_);
 }
 
@@ -130,7 +109,7 @@ void Reader::look_outside() noexcept {
 void Reader::stand_back() noexcept {
   const std::int64_t rest_ns = share_.rest_ns(arrival_clock_ns(), thread_time_ns);
   if (rest_ns == 0) return;
-  counters_.stood_back.add(1);
+  ++now_.stood_back;
   std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
 }
 
@@ -163,11 +142,11 @@ bool Reader::turn(std::chrono::nanoseconds timeout) {
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
   for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
-  publish_counters();
   links_.hand_over.delivered();
   // After everything that is urgent.
   if (links_.tape != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
-  counters_.turns.add(1);
+  ++now_.turns;
+  publish_books();
   // A source that waits for its reader takes no time from others.
   if (!transport_->holds_back()) stand_back();
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
@@ -178,8 +157,8 @@ void Reader::end() {
   // Bytes of an incomplete last frame count as skipped.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();
-  if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);
-  publish_counters();
+  if (!transport_->stopped()) now_.bytes_at_end = driver_.counters().bytes_skipped - skipped;
+  publish_books();
 }
 
 void Reader::run() noexcept {

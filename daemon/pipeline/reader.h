@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -11,7 +10,7 @@
 
 #include "daemon/channels/channel_table.h"
 #include "daemon/health/books.h"
-#include "daemon/pipeline/event_queue.h"
+#include "daemon/pipeline/event.h"
 #include "daemon/pipeline/hand_over.h"
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/parts_exchange.h"
@@ -20,25 +19,10 @@
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/counter.h"
 #include "drivers/transport/transport.h"
 #include "filters/chain/incrementer.h"
 
 namespace ifog {
-
-// Readable by any thread; relaxed, since independent.
-struct ReaderCounters {
-  Counter turns, samples, gaps, missing, invalid, repeated;
-  Counter saturated, implausible, channel_implausible, channel_drops;
-  Counter values_beyond;  // of ifog_driver_counters
-  Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
-  Counter stood_back;                       // number of pauses, see ProcessorShare
-  Counter bytes_at_end;                     // incomplete last frame of a file; also in bytes_skipped
-  std::atomic<std::uint32_t> axes_seen{0};  // Incrementer::axes_seen()
-  std::atomic<bool> mixed{false};           // Incrementer::mixed()
-  std::atomic<double> clock_offset_ppm{0.0};
-  std::atomic<double> interval_error{0.0};  // Incrementer::interval_error()
-};
 
 // Links of the reader to the other parts of its pipeline.
 struct ReaderLinks {
@@ -66,7 +50,6 @@ class Reader {
   [[nodiscard]] Transport& transport() noexcept { return *transport_; }
   [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
   [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
-  [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
   // For any thread that may wait for the reader.
   [[nodiscard]] ReaderBooks books() const noexcept { return links_.books.read(); }
 
@@ -75,7 +58,7 @@ class Reader {
   void look_outside() noexcept;
   void record(const Delivery& delivery) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
-  void publish_counters();
+  void publish_books();
   void end();
   void tell_beyond(const ifog_driver_counters& driver) noexcept;
   void stand_back() noexcept;
@@ -98,7 +81,6 @@ class Reader {
   } reported_;
   std::uint64_t pushed_ = 0;  // in samples
   ReaderBooks now_;
-  ReaderCounters counters_;
 };
 
 }  // namespace ifog

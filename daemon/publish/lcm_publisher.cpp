@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <lcm/lcm.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <functional>
 #include <stdexcept>
 
 #include "daemon/publish/publisher.h"
@@ -23,13 +27,7 @@ class LcmPublisher final : public Publisher {
   LcmPublisher& operator=(const LcmPublisher&) = delete;
 
   bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
-    // Sending may be interrupted by the reader's alarm while it waits for socket space; then nothing was
-    // sent. (LCM returns no reason, but keeps errno.)
-    for (;;) {
-      errno = 0;
-      if (lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0) return true;
-      if (errno != EINTR) return false;
-    }
+    return lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0;
   }
 
  private:
@@ -40,6 +38,20 @@ class LcmPublisher final : public Publisher {
 
 std::unique_ptr<Publisher> make_lcm_publisher(const std::string& url) {
   return std::make_unique<LcmPublisher>(url);
+}
+
+// By an abstract socket name, in no folder, which the kernel gives to one process and releases when that ends.
+std::optional<Fd> claim_channel(const std::string& lcm_url, const std::string& channel) {
+  Fd fd(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  // A hash, as names are limited to 107 characters.
+  const std::string text = "ifogd " + std::to_string(std::hash<std::string>()(lcm_url + ' ' + channel));
+  text.copy(name.sun_path + 1, sizeof name.sun_path - 1);
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+  if (::bind(fd, reinterpret_cast<const sockaddr*>(&name), length) != 0 && errno == EADDRINUSE)
+    return std::nullopt;
+  return fd;
 }
 
 }  // namespace ifog

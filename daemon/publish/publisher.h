@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "drivers/system/fd.h"
 
 namespace ifog {
 
@@ -19,5 +22,10 @@ class Publisher {
 // Raw LCM publisher, which does not allocate (unlike the typed one). One per thread, since an lcm_t locks.
 // Throws std::runtime_error with one line if LCM rejects the URL.
 std::unique_ptr<Publisher> make_lcm_publisher(const std::string& url);
+
+// Claims an LCM channel for as long as the descriptor is open, because listeners cannot distinguish two
+// publishers on one channel (several daemons may read one CAN bus or capture). nullopt: another process of this
+// network namespace has it.
+std::optional<Fd> claim_channel(const std::string& lcm_url, const std::string& channel);
 
 }  // namespace ifog

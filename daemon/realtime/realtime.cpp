@@ -5,11 +5,16 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -69,6 +74,25 @@ std::string lock_memory() {
   mallopt(M_ARENA_MAX, 1);
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
   return "memory not locked: " + reason(errno) + " (needs CAP_IPC_LOCK or LimitMEMLOCK)";
+}
+
+void ThreadWatch::begin() noexcept { thread_.store(gettid(), std::memory_order_relaxed); }
+
+// proc(5): the state is the third field, the times of user and system are 14 and 15. The name, in brackets, may
+// contain anything, so fields are counted from the last bracket.
+bool ThreadWatch::starved() {
+  std::ifstream file("/proc/self/task/" + std::to_string(thread_.load(std::memory_order_relaxed)) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  char state = '?';
+  std::string between;
+  std::uint64_t user = 0, system = 0;
+  fields >> state;
+  for (int field = 4; field < 14; ++field) fields >> between;
+  fields >> user >> system;
+  const bool was_ready = std::exchange(state_, state) == 'R';
+  const bool worked = std::exchange(ticks_, user + system) != user + system;
+  return was_ready && state == 'R' && !worked;
 }
 
 }  // namespace ifog

@@ -3,6 +3,8 @@
 // failures are returned as text for the log.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,5 +25,21 @@ void prefault_stack() noexcept;
 // mlockall for present and future mappings; later threads get small stacks. Returns "" or the reason of
 // failure.
 std::string lock_memory();
+
+// Reason why a thread makes no progress: starved if it is ready but gets no processor (something has higher
+// priority); stuck if it waits or does not finish.
+class ThreadWatch {
+ public:
+  // For the watched thread.
+  void begin() noexcept;
+  // For one other thread: true if it was starved since the last call, ready both times without processor time
+  // between.
+  [[nodiscard]] bool starved();
+
+ private:
+  std::atomic<int> thread_{0};
+  char state_ = '?';         // R: running or ready
+  std::uint64_t ticks_ = 0;  // processor time, including the kernel
+};
 
 }  // namespace ifog

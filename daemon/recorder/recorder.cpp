@@ -5,7 +5,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstring>
 #include <iterator>
@@ -78,11 +77,11 @@ void Recorder::stop() {
   drain(now_ns, wall_ns, true);
   // Losses without a later delivery.
   const TapeCounters& counters = tape_.counters();
-  if (const std::uint64_t unreported = counters.lost_deliveries.value() - reported_[0]; unreported > 0) {
-    const std::array<std::uint64_t, 2> lost{unreported, counters.lost_bytes.value() - reported_[1]};
+  const FlightLoss unreported{counters.lost_deliveries.value() - reported_.deliveries,
+                              counters.lost_bytes.value() - reported_.bytes};
+  if (unreported.deliveries > 0)
     archive_.add({FlightKind::lost, 0, 0, 0, now_ns},
-                 {reinterpret_cast<const std::uint8_t*>(lost.data()), sizeof lost});
-  }
+                 {reinterpret_cast<const std::uint8_t*>(&unreported), sizeof unreported});
   std::uint64_t unwritten = archive_.close(now_ns, wall_ns);
   // Entries that could not leave the tape because of the disk.
   FlightLoss left;
@@ -92,21 +91,24 @@ void Recorder::stop() {
     const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
     if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
   }
-  counters_.unwritten.set(unwritten);
-  publish_counters();
-  counters_.lost_deliveries.add(left.deliveries);
-  counters_.lost_bytes.add(left.bytes);
+  publish_counts(left, unwritten);
   judge(now_ns);
   judge_the_end(archive_.lost_at_close().deliveries + left.deliveries);
 }
 
-void Recorder::publish_counters() {
-  counters_.file_bytes.set(archive_.bytes_written());
-  counters_.files_removed.set(archive_.files_removed());
-  FlightLoss lost = archive_.lost_with_files();
-  lost += archive_.lost_at_close();
-  counters_.lost_deliveries.set(lost.deliveries);
-  counters_.lost_bytes.set(lost.bytes);
+void Recorder::publish_counts(const FlightLoss& lost, std::uint64_t unwritten) {
+  Counts now{archive_.bytes_written(), archive_.files_removed(), unwritten, lost};
+  now.lost += archive_.lost_with_files();
+  now.lost += archive_.lost_at_close();
+  const std::lock_guard lock(mutex_);
+  counts_ = now;
+}
+
+Recorder::Counts Recorder::counts() const {
+  const std::lock_guard lock(mutex_);
+  Counts out = counts_;
+  out.lost += {tape_.counters().lost_deliveries.value(), tape_.counters().lost_bytes.value()};
+  return out;
 }
 
 void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
@@ -117,7 +119,7 @@ void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
 
 void Recorder::turn(std::int64_t now_ns, std::int64_t wall_ns) {
   drain(now_ns, wall_ns, false);
-  publish_counters();
+  publish_counts();
   judge(now_ns);
 }
 
@@ -131,9 +133,9 @@ void Recorder::fill() {
     }
     archive_.add(head, payload_, tape_.begins_delivery());
     if (head.kind != FlightKind::lost) continue;
-    std::array<std::uint64_t, 2> lost{};
-    std::memcpy(lost.data(), payload_.data(), sizeof lost);
-    for (std::size_t i = 0; i < lost.size(); ++i) reported_[i] += lost[i];
+    FlightLoss lost;
+    std::memcpy(&lost, payload_.data(), sizeof lost);
+    reported_ += lost;
   }
 }
 

@@ -3,7 +3,6 @@
 // full disk affects only the tape. It is not woken: it checks a few times a second.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -34,17 +33,13 @@ class Recorder {
 
   // Message for the log, once at the start and end of each problem; "" if nothing is new. good: it is over.
   [[nodiscard]] std::string take_message(bool& good);
-  // For any thread.
-  [[nodiscard]] std::uint64_t file_bytes() const noexcept { return counters_.file_bytes.value(); }
-  [[nodiscard]] std::uint64_t files_removed() const noexcept { return counters_.files_removed.value(); }
-  [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return counters_.unwritten.value(); }
-  // Deliveries lost: no space, removed while being written, or not accepted by the disk at the end.
-  [[nodiscard]] std::uint64_t lost_deliveries() const noexcept {
-    return tape_.counters().lost_deliveries.value() + counters_.lost_deliveries.value();
-  }
-  [[nodiscard]] std::uint64_t lost_bytes() const noexcept {
-    return tape_.counters().lost_bytes.value() + counters_.lost_bytes.value();
-  }
+  struct Counts {
+    std::uint64_t file_bytes = 0, files_removed = 0, entries_unwritten = 0;
+    // Deliveries lost: no space, removed while being written, or not accepted by the disk at the end.
+    FlightLoss lost{};
+  };
+  // For any thread that may wait.
+  [[nodiscard]] Counts counts() const;
 
   // One turn of the thread, at these times; for tests.
   void turn(std::int64_t now_ns, std::int64_t wall_ns);
@@ -54,7 +49,8 @@ class Recorder {
   void drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush);
   void fill();
   bool begin_settings();
-  void publish_counters();
+  // lost, unwritten: what is left on the tape at the end.
+  void publish_counts(const FlightLoss& lost = {}, std::uint64_t unwritten = 0);
   void judge(std::int64_t now_ns);
   void judge_the_end(std::uint64_t deliveries);
   void say(std::string message, bool good);
@@ -64,8 +60,7 @@ class Recorder {
   Tape tape_;
   FlightArchive archive_;
   std::vector<std::uint8_t> payload_;
-  // Deliveries and bytes lost, as read from the tape.
-  std::array<std::uint64_t, 2> reported_{};
+  FlightLoss reported_;  // as read from the tape
   // Losses before the problem, and its beginning and end by turns.
   struct Trouble {
     bool present = false;
@@ -74,7 +69,7 @@ class Recorder {
   } trouble_;
   std::uint32_t settings_due_ = 0;  // their file starts when all before is written
 
-  std::mutex mutex_;  // never locked by a real-time thread
+  mutable std::mutex mutex_;  // never locked by a real-time thread
   std::condition_variable stops_;
   std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
   struct Message {
@@ -82,9 +77,7 @@ class Recorder {
     bool good = false;
   } message_;
 
-  struct Counters {
-    Counter file_bytes, files_removed, unwritten, lost_deliveries, lost_bytes;
-  } counters_;
+  Counts counts_;
   bool stopping_ = false;  // protected by mutex_
   std::thread thread_;
 };

@@ -25,7 +25,14 @@ std::size_t bytes_of(const Delivery& delivery) noexcept {
 
 }  // namespace
 
-Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(bytes_) {}
+// The queue's pages become resident; otherwise, without locked memory, the reader thread would have page faults
+// until the tape has been used once.
+Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(bytes_) {
+  const std::vector<std::uint8_t> zeros(1U << 16U);
+  while (queue_.push(zeros.data(), zeros.size()) > 0) {
+  }
+  queue_.reset();
+}
 
 // Largest size of what put() may push for it.
 std::size_t Tape::room_for(const Delivery& delivery) noexcept {
@@ -83,15 +90,13 @@ void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const C
   if (queue_.write_available() < room_for(delivery)) {
     counters_.lost_deliveries.add(1);
     counters_.lost_bytes.add(bytes);
-    ++unreported_deliveries_;
-    unreported_bytes_ += bytes;
+    unreported_ += {1, bytes};
     reopened_ = reopened_ || delivery.restarted;
     return;
   }
-  if (unreported_deliveries_ > 0) {
-    const std::array<std::uint64_t, 2> lost{unreported_deliveries_, unreported_bytes_};
-    push({FlightKind::lost, 0, 0, 0, read_ns}, lost.data(), sizeof lost);
-    unreported_deliveries_ = unreported_bytes_ = 0;
+  if (unreported_.deliveries > 0) {
+    push({FlightKind::lost, 0, 0, 0, read_ns}, &unreported_, sizeof unreported_);
+    unreported_ = {};
   }
   if (settings_due_ != 0) {
     const FlightEntryHead note{FlightKind::settings, 0, 0, std::exchange(settings_due_, 0), read_ns};

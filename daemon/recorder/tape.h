@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "drivers/flight/archive.h"
 #include "drivers/flight/entry.h"
 #include "drivers/transport/counter.h"
 #include "drivers/transport/transport.h"
@@ -24,21 +25,6 @@ namespace ifog {
 // Deliveries and payload bytes received, and those without space. Readable by any thread.
 struct TapeCounters {
   Counter deliveries, bytes, lost_deliveries, lost_bytes;
-};
-
-// Allocates resident pages; otherwise, without locked memory, the reader thread would have page faults until
-// the tape has been used once.
-template <typename T>
-struct TouchedMemory : std::allocator<T> {
-  template <typename U>
-  struct rebind {
-    using other = TouchedMemory<U>;
-  };
-  T* allocate(std::size_t n) {
-    T* const out = std::allocator<T>::allocate(n);
-    std::memset(out, 0, n * sizeof(T));
-    return out;
-  }
 };
 
 class Tape {
@@ -78,13 +64,13 @@ class Tape {
   void push_frame(const ifog_can_frame& frame, std::uint8_t flags, std::int64_t read_ns) noexcept;
 
   std::size_t bytes_;
-  boost::lockfree::spsc_queue<std::uint8_t, boost::lockfree::allocator<TouchedMemory<std::uint8_t>>> queue_;
+  boost::lockfree::spsc_queue<std::uint8_t> queue_;
   // Reader thread.
   std::array<ChannelValue, kMaxChannels> recorded_{};  // last recorded value of each channel
   std::int64_t wall_shift_ns_ = 0;
   std::uint64_t merged_ = 0;
-  std::uint64_t unreported_deliveries_ = 0, unreported_bytes_ = 0;  // lost since the last `lost` entry
-  bool reopened_ = false;                                           // in a lost delivery
+  FlightLoss unreported_;  // since the last `lost` entry
+  bool reopened_ = false;  // in a lost delivery
   std::uint32_t settings_due_ = 0;
   TapeCounters counters_;
   // Recorder thread, on its own cache lines.

@@ -2,6 +2,7 @@
 #include "daemon/sensor/sensor_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
@@ -16,7 +17,7 @@
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
-#include "drivers/transport/serial/serial.h"
+#include "drivers/transport/serial/serial_port.h"
 
 namespace ifog {
 namespace {
@@ -38,58 +39,35 @@ std::vector<CanId> wanted_ids(const ifog_description& description) {
   return ids;
 }
 
-void require(bool fits, const SensorConfig& sensor, const char* type, const char* needs) {
-  if (!fits)
-    throw KeyError("transport.type", "driver \"" + printable(sensor.driver) +
-                                         "\" cannot be fed from a transport of type \"" + type +
-                                         "\": it takes " + needs);
+using Kind = TransportConfig::Kind;
+
+bool is_candump(const TransportConfig& transport) {
+  return transport.kind == Kind::file && transport.file.format == FileSettings::Format::candump;
 }
 
-// True if the text contains it as a whole word.
-bool has_word(std::string_view text, std::string_view word) {
-  const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || !of_word(static_cast<unsigned char>(text[at - 1]))) &&
-        (end == text.size() || !of_word(static_cast<unsigned char>(text[end]))))
-      return true;
-  }
-  return false;
+// Throws if the driver cannot be fed from the transport.
+void check_feeding(const SensorConfig& sensor, const DriverInstance& driver) {
+  const TransportConfig& transport = sensor.transport;
+  const bool frames = transport.kind == Kind::can || is_candump(transport);
+  if (frames ? driver.takes_can() : driver.takes_bytes()) return;
+  constexpr std::array kTypes{"serial", "can", "udp", "tcp", "file (bytes)"};
+  const std::string type =
+      is_candump(transport) ? "file (candump)" : kTypes.at(static_cast<std::size_t>(transport.kind));
+  throw KeyError("transport.type",
+                 "driver \"" + printable(sensor.driver) + "\" cannot be fed from a transport of type \"" +
+                     type + "\": it takes " + (frames ? "bytes" : "CAN frames") +
+                     (transport.kind == Kind::file && !frames ? ": format = \"candump\"" : ""));
 }
 
 // The sensor's key of that table which an error names first; else "".
-std::string key_in(const SensorConfig& sensor, const std::string& table, const std::string& complaint) {
-  std::string found;
-  std::size_t first = std::string::npos;
-  for (const auto& [key, line] : sensor.lines) {
-    if (!key.starts_with(table) || !has_word(complaint, key.substr(table.size()))) continue;
-    if (const std::size_t at = complaint.find(key.substr(table.size())); at < first) {
-      first = at;
-      found = key;
-    }
+std::string key_in(const SensorConfig& sensor, const std::string& table, std::string_view complaint) {
+  const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  for (auto end = complaint.begin(); end != complaint.end();) {
+    const auto begin = std::find_if(end, complaint.end(), of_word);
+    end = std::find_if_not(begin, complaint.end(), of_word);
+    if (const std::string key = table + std::string(begin, end); sensor.lines.contains(key)) return key;
   }
-  return found;
-}
-
-std::unique_ptr<Transport> can_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  require(driver.takes_can(), sensor, "can", "bytes");
-  CanSettings settings;
-  settings.interface = sensor.transport.interface;
-  settings.ids = wanted_ids(driver.description());
-  return make_can_transport(settings);
-}
-
-std::unique_ptr<Transport> file_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  const TransportConfig& config = sensor.transport;
-  const bool candump = config.file.format == FileSettings::Format::candump;
-  if (candump)
-    require(driver.takes_can(), sensor, "file (candump)", "bytes");
-  else
-    require(driver.takes_bytes(), sensor, "file (bytes)", "CAN frames: format = \"candump\"");
-  FileSettings settings = config.file;
-  settings.interface = config.interface;
-  if (candump) settings.ids = wanted_ids(driver.description());
-  return make_file_transport(settings);
+  return "";
 }
 
 }  // namespace
@@ -105,7 +83,7 @@ DriverInstance make_sensor_driver(const SensorConfig& sensor,
 }
 
 SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverInstance& driver) {
-  require(driver.takes_bytes(), sensor, "serial", "CAN frames");
+  check_feeding(sensor, driver);
   SerialSettings settings = sensor.transport.serial;
   if (settings.baud == 0) settings.baud = driver.description().baud;
   if (settings.baud == 0)
@@ -116,21 +94,24 @@ SerialSettings sensor_serial_settings(const SensorConfig& sensor, const DriverIn
 }
 
 std::unique_ptr<Transport> make_sensor_transport(const SensorConfig& sensor, const DriverInstance& driver) {
-  switch (sensor.transport.kind) {
-    case TransportConfig::Kind::serial:
+  check_feeding(sensor, driver);
+  const TransportConfig& transport = sensor.transport;
+  FileSettings file = transport.file;
+  switch (transport.kind) {
+    case Kind::serial:
       return make_serial_transport(sensor_serial_settings(sensor, driver));
-    case TransportConfig::Kind::can:
-      return can_transport(sensor, driver);
-    case TransportConfig::Kind::udp:
-      require(driver.takes_bytes(), sensor, "udp", "CAN frames");
-      return make_udp_transport(sensor.transport.udp);
-    case TransportConfig::Kind::tcp:
-      require(driver.takes_bytes(), sensor, "tcp", "CAN frames");
-      return make_tcp_transport(sensor.transport.tcp);
-    case TransportConfig::Kind::file:
+    case Kind::can:
+      return make_can_transport({.interface = transport.interface, .ids = wanted_ids(driver.description())});
+    case Kind::udp:
+      return make_udp_transport(transport.udp);
+    case Kind::tcp:
+      return make_tcp_transport(transport.tcp);
+    case Kind::file:
       break;
   }
-  return file_transport(sensor, driver);
+  file.interface = transport.interface;
+  if (is_candump(transport)) file.ids = wanted_ids(driver.description());
+  return make_file_transport(file);
 }
 
 std::vector<ChannelConfig> outside_channels(const SensorConfig& sensor) {

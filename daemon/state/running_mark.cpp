@@ -19,7 +19,6 @@
 #include <utility>
 
 #include "daemon/state/state_folder.h"
-#include "drivers/system/fd.h"
 
 namespace ifog {
 namespace {
@@ -77,27 +76,20 @@ void reply(int fd, const std::string& text) {
   const int room = 1 << 20;  // bytes; less by net.core.wmem_max
   (void)::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &room, sizeof room);
   (void)::send(fd, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-  ::close(fd);
 }
 
 }  // namespace
-
-RunningMark::~RunningMark() {
-  for (const auto& [fd, question] : clients_) ::close(fd);
-  for (const int fd : {fd_, socket_})
-    if (fd >= 0) ::close(fd);
-}
 
 std::string RunningMark::set(const std::string& folder) {
   in_use_ = false;
   if (folder.empty()) return "";
   const std::string path = mark_path(folder);
   const auto cannot = [&](const std::string& why) {
-    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+    fd_.close();
     return path + ": cannot mark that a daemon runs: " + why;
   };
   // No link and no FIFO, which others with write access may have created.
-  fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
+  fd_ = Fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644));
   if (fd_ < 0) return cannot(reason(errno));
   if (!is_plain(fd_)) return cannot("no regular file");
   // Readable by others, regardless of the umask.
@@ -107,7 +99,7 @@ std::string RunningMark::set(const std::string& folder) {
   if (errno != EACCES && errno != EAGAIN) return cannot(reason(errno));
   lock = whole_file(F_WRLCK);
   const bool known = ::fcntl(fd_, F_GETLK, &lock) == 0 && lock.l_type == F_WRLCK && lock.l_pid > 0;
-  ::close(std::exchange(fd_, -1));
+  fd_.close();
   in_use_ = true;
   return path + ": another daemon" + (known ? ", process " + std::to_string(lock.l_pid) + "," : "") +
          " works with this state folder; expected one of its own for each";
@@ -117,7 +109,7 @@ std::string RunningMark::listen_in(const std::string& folder) {
   const Fd holder(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   struct stat there {};
   if (::fstat(holder, &there) == 0) group_ = there.st_gid;
-  socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  socket_ = Fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   // Removes the socket of a killed daemon, or anything of this name, without following it.
   (void)::unlinkat(holder, kSocketName, 0);
   const sockaddr_un address = address_in(holder);
@@ -147,13 +139,9 @@ void RunningMark::answer(const std::string& complaint) {
 
 bool RunningMark::serve() {
   for (int fd = 0; (fd = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC)) >= 0;) {
-    if (may_ask(fd, group_))
-      clients_.emplace_back(fd, 0);
-    else
-      ::close(fd);
-    if (clients_.size() <= kMostClients) continue;
-    ::close(clients_.front().first);
-    clients_.erase(clients_.begin());
+    Fd client(fd);
+    if (may_ask(client, group_)) clients_.emplace_back(std::move(client), 0);
+    if (clients_.size() > kMostClients) clients_.erase(clients_.begin());
   }
   bool asked = false;
   std::erase_if(clients_, [&](auto& client) {
@@ -164,9 +152,7 @@ bool RunningMark::serve() {
     asked = asked || question == static_cast<char>(DaemonQuestion::reload);
     const bool answered = question == static_cast<char>(DaemonQuestion::status) && !statuses_.empty();
     if (answered) reply(fd, statuses_);
-    const bool gone = !answered && (n == 0 || (n < 0 && errno != EAGAIN));
-    if (gone) ::close(fd);
-    return answered || gone;
+    return answered || n == 0 || (n < 0 && errno != EAGAIN);
   });
   return asked;
 }

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/system/fd.h"
+
 namespace ifog {
 
 enum class DaemonQuestion : char {
@@ -21,11 +23,6 @@ enum class DaemonQuestion : char {
 
 class RunningMark {
  public:
-  RunningMark() = default;
-  ~RunningMark();
-  RunningMark(const RunningMark&) = delete;
-  RunningMark& operator=(const RunningMark&) = delete;
-
   [[nodiscard]] bool is_set() const { return fd_ >= 0; }
   // Marks this process as the running one. folder "": does nothing. Returns "" or an error: no permission for
   // the folder, or another daemon uses it (then in_use() is true).
@@ -42,10 +39,10 @@ class RunningMark {
  private:
   std::string listen_in(const std::string& folder);
 
-  int fd_ = -1, socket_ = -1;
+  Fd fd_, socket_;
   bool in_use_ = false;
-  gid_t group_ = 0;                            // of the folder
-  std::vector<std::pair<int, char>> clients_;  // with their question, 0 if not yet received
+  gid_t group_ = 0;                           // of the folder
+  std::vector<std::pair<Fd, char>> clients_;  // with their question, 0 if not yet received
   std::string statuses_;
 };
 

@@ -22,39 +22,28 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
 
 // Limit of a slewed clock's error rate (chrony's maxslewrate is 1/12).
 constexpr std::int64_t kSlews = 8;
-constexpr std::int64_t kShortestSleep_ns = 1'000'000;
-constexpr std::int64_t kLook_ns = 1'000'000'000;
 
-// Time asleep since boot: updated if CLOCK_BOOTTIME has gained more on the crystal than slewing could
-// explain. Both ends of the interval are valid, even if the thread was delayed between two readings.
+// Time asleep since boot: constant until the computer sleeps. Both ends of the interval are valid, even if the
+// thread was delayed between two readings.
 class TimeAsleep {
  public:
   std::int64_t at(std::int64_t raw_ns) noexcept {
-    if (raw_ns - asked_ns_.load(std::memory_order_relaxed) < kAsk_ns)
-      return asleep_ns_.load(std::memory_order_relaxed);
+    const std::int64_t asleep = asleep_ns_.load(std::memory_order_relaxed);
+    if (raw_ns - asked_ns_.load(std::memory_order_relaxed) < kAsk_ns) return asleep;
     asked_ns_.store(raw_ns, std::memory_order_relaxed);
-    const std::int64_t boot_ns = clock_ns(CLOCK_BOOTTIME);
-    const std::int64_t since_ns = raw_ns - raw_ns_.load(std::memory_order_relaxed);
-    const std::int64_t ahead_ns = boot_ns - boot_ns_.load(std::memory_order_relaxed) - since_ns;
-    if (since_ns > kLook_ns || ahead_ns > kShortestSleep_ns + since_ns / kSlews) look(raw_ns, boot_ns);
-    return asleep_ns_.load(std::memory_order_relaxed);
-  }
-
- private:
-  void look(std::int64_t raw_ns, std::int64_t boot_ns) noexcept {
     const std::int64_t before = clock_ns(CLOCK_MONOTONIC);
     const std::int64_t boot = clock_ns(CLOCK_BOOTTIME);
     const std::int64_t after = clock_ns(CLOCK_MONOTONIC);
-    const std::int64_t now = asleep_ns_.load(std::memory_order_relaxed);
-    if (now < boot - after || now > boot - before)
-      asleep_ns_.store(std::max<std::int64_t>(0, boot - after), std::memory_order_relaxed);
-    raw_ns_.store(raw_ns, std::memory_order_relaxed);
-    boot_ns_.store(boot_ns, std::memory_order_relaxed);
+    if (boot - after <= asleep && asleep <= boot - before) return asleep;
+    const std::int64_t now = std::max<std::int64_t>(0, boot - after);
+    asleep_ns_.store(now, std::memory_order_relaxed);
+    return now;
   }
 
+ private:
   static constexpr std::int64_t kAsk_ns = 1'000'000;  // a clock costs 80 ns to read; sleep is longer
 
-  std::atomic<std::int64_t> asleep_ns_{0}, raw_ns_{0}, boot_ns_{0}, asked_ns_{0};
+  std::atomic<std::int64_t> asleep_ns_{0}, asked_ns_{0};
 };
 
 // CLOCK_MONOTONIC_RAW plus the time asleep.

@@ -5,6 +5,8 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
@@ -36,5 +38,44 @@ void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::stri
 void ask_for_times(int fd, const std::string& name, std::string& warning);
 // Requests the number of dropped packets with each packet (SO_RXQ_OVFL).
 void ask_for_drops(int fd) noexcept;
+
+// Messages of one system call.
+template <std::size_t kMost>
+class ReceiveBatch {
+ public:
+  // Where message i goes, and its sender's address if that is wanted.
+  void place(std::size_t i, const iovec& room, sockaddr_storage* sender = nullptr) noexcept {
+    vectors_[i] = room;
+    msghdr& header = messages_[i].msg_hdr;
+    header.msg_iov = &vectors_[i];
+    header.msg_iovlen = 1;
+    header.msg_control = control_[i].bytes;
+    header.msg_name = sender;
+  }
+  // Those that wait: their number, or −1 and errno.
+  int receive(int fd) noexcept {
+    // Resets the messages that the previous call used.
+    for (std::size_t i = 0; i < filled_; ++i) {
+      msghdr& header = messages_[i].msg_hdr;
+      header.msg_namelen = header.msg_name == nullptr ? 0 : sizeof(sockaddr_storage);
+      header.msg_controllen = sizeof(ControlRoom);
+      header.msg_flags = 0;
+    }
+    const int n = recvmmsg(fd, messages_.data(), kMost, MSG_DONTWAIT, nullptr);
+    // A failed message may be partly filled.
+    filled_ = std::min(kMost, static_cast<std::size_t>(std::max(n, 0)) + 1);
+    return n;
+  }
+  [[nodiscard]] std::size_t length(std::size_t i) const noexcept { return messages_[i].msg_len; }
+  [[nodiscard]] ReceiveControl control(std::size_t i) const noexcept {
+    return receive_control(messages_[i].msg_hdr);
+  }
+
+ private:
+  std::size_t filled_ = kMost;  // number of messages to be prepared
+  std::array<iovec, kMost> vectors_{};
+  std::array<ControlRoom, kMost> control_{};
+  std::array<mmsghdr, kMost> messages_{};
+};
 
 }  // namespace ifog

@@ -29,7 +29,7 @@ void Transport::open(std::span<const std::uint8_t> opening) {
       throw OpenError(name_, "cannot open", ETIMEDOUT, "an answer within a second");
   } catch (const OpenError& error) {
     enter(TransportState::gone, error.reason);
-    backoff_.failed(monotonic_ns());
+    failed();
     throw;
   }
   notices_.keep_warning(std::move(warning));
@@ -62,11 +62,8 @@ Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
 
 bool Transport::regain(std::int64_t until_ns) noexcept {
   for (;;) {
-    const std::int64_t attempt = std::min(backoff_.next_ns(), until_ns);
-    short happened = 0;
-    if (waiting_.wait(-1, 0, attempt, happened) == Wake::stopped) return false;
-    if (attempt < backoff_.next_ns()) return false;
-    ReadAlarm::of_this_thread().off();
+    if (waiting_.wait(-1, 0, std::min(link_.attempt_ns, until_ns)) == Wake::stopped) return false;
+    if (until_ns < link_.attempt_ns) return false;
     try {
       std::string warning;
       if (!connect(warning, until_ns)) return false;
@@ -74,7 +71,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     } catch (const std::exception& error) {
       const auto* refused = dynamic_cast<const OpenError*>(&error);
       enter(TransportState::gone, refused != nullptr ? refused->reason : ENOMEM);
-      backoff_.failed(monotonic_ns());
+      failed();
       continue;
     }
     link_.open = true;
@@ -94,10 +91,14 @@ void Transport::lost(int reason) noexcept {
   enter(TransportState::gone, reason);
   const std::int64_t now = monotonic_ns();
   // A device that opens and disappears at once (a busy server, a faulty line) is retried after a pause.
-  if (now - link_.since_ns > Backoff::kLongest_ns)
-    backoff_.restart(now);
-  else
-    backoff_.failed(now);
+  if (now - link_.since_ns <= kLongestPause_ns) return failed();
+  link_.attempt_ns = now;
+  link_.pause_ns = kFirstPause_ns;
+}
+
+void Transport::failed() noexcept {
+  link_.attempt_ns = monotonic_ns() + link_.pause_ns;
+  link_.pause_ns = std::min(2 * link_.pause_ns, kLongestPause_ns);
 }
 
 void Transport::left() noexcept {

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -17,10 +18,7 @@
 #include <vector>
 
 #include "drivers/ifog/driver.h"
-#include "drivers/transport/backlog.h"
-#include "drivers/transport/backoff.h"
 #include "drivers/transport/counter.h"
-#include "drivers/transport/notices.h"
 #include "drivers/transport/stoppable_wait.h"
 
 namespace ifog {
@@ -76,6 +74,65 @@ struct TransportFault {
   std::string_view text{};     // beginning of the text there; lives as long as the transport
 };
 
+// Messages from opening a device, for the log. Thread-safe; the mutex is used when a device opens, never
+// while it is read.
+class Notices {
+ public:
+  // What the device did not grant but is not essential; "" for nothing.
+  void keep_warning(std::string&& warning) {
+    const std::lock_guard lock(mutex_);
+    new_warning_ = new_warning_ || (!warning.empty() && warning != warning_);
+    warning_ = std::move(warning);
+  }
+  // Returns each text once, even if the device is reopened with the same; "" if there is nothing new.
+  [[nodiscard]] std::string take_warning() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(new_warning_, false) ? warning_ : std::string();
+  }
+  // The device's answers to its set-up.
+  void keep_answers(const std::string& answers) {
+    const std::lock_guard lock(mutex_);
+    answers_ = answers;
+  }
+  // Returns them once each time; "" if there is nothing new.
+  [[nodiscard]] std::string take_answers() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(answers_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string warning_, answers_;
+  bool new_warning_ = false;
+};
+
+// Decides if the time of a read is an arrival time.
+//
+// A process that was delayed (stopped, starved, asleep with its computer) reads everything that arrived
+// meanwhile at once. If the read time were used as arrival time, late reads would look like a silence, and
+// later samples like losses. So after a read that was entered or left late, arrival times are unknown until
+// the backlog is read.
+class Backlog {
+ public:
+  // Reports one read: entry, end and timeout. True: its data may have arrived at any time.
+  bool read(std::int64_t entered_ns, std::int64_t left_ns, std::int64_t timeout_ns) noexcept {
+    const bool late = left_ns - entered_ns > timeout_ns + kDelayed_ns ||
+                      (left_ns_ != 0 && entered_ns - left_ns_ > kDelayed_ns);
+    left_ns_ = left_ns;
+    if (late) until_ns_ = left_ns + kPiled_ns;
+    return until_ns_ != 0;
+  }
+  // True if the backlog may be read completely, provided that nothing more waits.
+  [[nodiscard]] bool may_be_over() const noexcept { return left_ns_ > until_ns_; }
+  void over() noexcept { until_ns_ = 0; }
+
+ private:
+  static constexpr std::int64_t kDelayed_ns = 50'000'000;
+  // The kernel passes data between buffers, so an empty read soon after the first is not conclusive.
+  static constexpr std::int64_t kPiled_ns = 100'000'000;
+  std::int64_t left_ns_ = 0, until_ns_ = 0;
+};
+
 class Transport {
  public:
   // Throws std::runtime_error if no eventfd is available.
@@ -114,7 +171,7 @@ class Transport {
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
   // Messages from opening the device.
-  [[nodiscard]] Notices& notices() { return notices_; }
+  [[nodiscard]] Notices& notices() const { return notices_; }
   // No more data: of the reading thread.
   void end(int reason) noexcept { enter(TransportState::ended, reason); }
   // A fault in the data, also counted as malformed. text: of the line. Of the reading thread.
@@ -122,7 +179,6 @@ class Transport {
 
  protected:
   using Wake = StoppableWait::Wake;
-  using Received = StoppableWait::Received;
 
   // (Re)opens the device and sends opening(). False: no answer until `until_ns` of CLOCK_MONOTONIC or stop();
   // the next call continues. Throws OpenError.
@@ -148,10 +204,15 @@ class Transport {
 
  private:
   bool regain(std::int64_t until_ns) noexcept;
+  void failed() noexcept;
   void enter(TransportState state, int reason) noexcept;
 
+  // Reopened at once, then at growing intervals, so that a returning device is used within a second.
+  static constexpr std::int64_t kFirstPause_ns = 10'000'000, kLongestPause_ns = 100'000'000;
   struct Link {
-    std::int64_t since_ns = 0;  // of CLOCK_MONOTONIC
+    std::int64_t since_ns = 0;    // open, of CLOCK_MONOTONIC
+    std::int64_t attempt_ns = 0;  // next one to open it, of the same clock
+    std::int64_t pause_ns = kFirstPause_ns;
     bool open = false, once = false;
     bool returning = false;  // the next delivery is the first since the device was reopened
   };
@@ -167,8 +228,7 @@ class Transport {
 
   std::string name_;
   std::vector<std::uint8_t> opening_;
-  Notices notices_;
-  Backoff backoff_;
+  mutable Notices notices_;
   Link link_;
   Backlog backlog_;
   // Relaxed: independent values. A reader may see a state before its reason, which is only for messages.

@@ -3,6 +3,7 @@
 #include "drivers/transport/clock.h"
 
 #include <linux/sock_diag.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -21,20 +22,13 @@ constexpr std::size_t kFramesAtOnce = 64;  // frames per system call
 class CanTransport final : public Transport {
  public:
   explicit CanTransport(const CanSettings& settings) : Transport(settings.interface), settings_(settings) {
-    for (std::size_t i = 0; i < kFramesAtOnce; ++i) {
-      vectors_[i] = {&raw_[i], sizeof raw_[i]};
-      messages_[i].msg_hdr.msg_iov = &vectors_[i];
-      messages_[i].msg_hdr.msg_iovlen = 1;
-      messages_[i].msg_hdr.msg_control = control_[i].bytes;
-    }
+    for (std::size_t i = 0; i < kFramesAtOnce; ++i) batch_.place(i, {&raw_[i], sizeof raw_[i]});
   }
 
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   int receive_waiting() noexcept;
-  bool leaves_for(int error) noexcept;
-  int receive_batch(int flags) noexcept;
   std::span<const ifog_can_frame> accept(std::size_t received, std::int64_t read_at) noexcept;
   void count_losses() noexcept override;
   void count_drops(std::uint32_t drops) noexcept;
@@ -42,14 +36,10 @@ class CanTransport final : public Transport {
   CanSettings settings_;
   CanSocket socket_;
   std::uint32_t drops_ = 0;
-  bool blocks_ = false;
-  std::size_t filled_ = kFramesAtOnce;  // number of messages_ to be prepared
   int leaving_ = 0;  // errno of the interface's disappearance; waiting frames are still read
   KernelStamps stamps_;
   std::array<canfd_frame, kFramesAtOnce> raw_{};
-  std::array<iovec, kFramesAtOnce> vectors_{};
-  std::array<ControlRoom, kFramesAtOnce> control_{};
-  std::array<mmsghdr, kFramesAtOnce> messages_{};
+  ReceiveBatch<kFramesAtOnce> batch_;
   std::array<ifog_can_frame, kFramesAtOnce> frames_{};
 };
 
@@ -67,25 +57,15 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_drops(socket_.fd());
   ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
   ask_for_times(socket_.fd(), name(), warning);
-  blocks_ = StoppableWait::let_block(socket_.fd());
   return true;
 }
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
-  int n = 0;
-  if (leaving_ == 0) {
-    const Received got = waiting_.receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
-      return ssize_t{receive_batch(may_wait ? MSG_WAITFORONE : MSG_DONTWAIT)};
-    });
-    if (got.wake != Wake::ready) {
-      count_losses();
-      return {};
-    }
-    n = static_cast<int>(got.n);
-    if (n <= 0 && !leaves_for(got.error)) return {};
+  if (leaving_ == 0 && waiting_.wait(socket_.fd(), POLLIN, until_ns) != Wake::ready) {
+    count_losses();
+    return {};
   }
-  if (n <= 0) n = receive_waiting();
-  if (n > 0) {
+  if (const int n = receive_waiting(); n > 0) {
     Delivery delivery;
     delivery.read_ns = arrival_clock_ns();
     delivery.frames = accept(static_cast<std::size_t>(n), delivery.read_ns);
@@ -103,30 +83,12 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 int CanTransport::receive_waiting() noexcept {
   constexpr int kErrors = 4;  // more than one socket can report
   for (int errors = 0; errors < kErrors; ++errors) {
-    const int n = receive_batch(MSG_DONTWAIT);
+    const int n = batch_.receive(socket_.fd());
     if (n > 0) return n;
-    if (!leaves_for(n < 0 ? errno : 0)) return 0;
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) return 0;
+    leaving_ = n < 0 ? errno : ENODEV;
   }
   return 0;
-}
-
-// False: there are only no data.
-bool CanTransport::leaves_for(int error) noexcept {
-  if (error == EINTR || error == EAGAIN) return false;
-  leaving_ = error != 0 ? error : ENODEV;
-  return true;
-}
-
-int CanTransport::receive_batch(int flags) noexcept {
-  // Resets the messages that the previous call used.
-  for (std::size_t i = 0; i < filled_; ++i) {
-    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
-    messages_[i].msg_hdr.msg_flags = 0;
-  }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, flags, nullptr);
-  // A failed message may be partly filled.
-  filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
-  return n;
 }
 
 // Each frame carries the count of drops before it; after the last one it must be requested.
@@ -150,10 +112,10 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received, std::
   std::size_t kept = 0;
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < received; ++i) {
-    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
+    const ReceiveControl said = batch_.control(i);
     if (said.has_drops) count_drops(said.drops);
     ifog_can_frame& frame = frames_[kept];
-    switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
+    switch (from_socket(raw_[i], batch_.length(i), frame)) {
       case CanKind::data:
         frame.arrival_ns = said.arrival_ns != 0 ? stamps_.on_arrival_clock(said.arrival_ns) : read_at;
         ++kept;

@@ -8,13 +8,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace ifog {
 namespace {
-
-[[noreturn]] void fail(const std::string& path) {
-  throw OpenError(path, "cannot open", errno, "a readable file or FIFO");
-}
 
 bool is_gzip(int fd) {
   std::array<unsigned char, 2> magic{};
@@ -25,61 +22,34 @@ bool is_gzip(int fd) {
 
 void ByteFile::open(const std::string& path) {
   const bool standard_input = path == "-";
+  const auto fail = [&](int error) {
+    throw OpenError(path, "cannot open", error, "a readable file or FIFO");
+  };
   // Without O_NONBLOCK opening a FIFO would wait for its writer and could not be stopped.
-  const int fd =
-      standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (fd < 0) fail(path);
+  Fd fd(standard_input ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                       : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
   struct stat info {};
-  if (fstat(fd, &info) != 0 || S_ISDIR(info.st_mode)) {
-    const int error = S_ISDIR(info.st_mode) ? EISDIR : errno;
-    if (!standard_input) ::close(fd);
-    errno = error;
-    fail(path);
-  }
-  if (!standard_input) {
-    try {
-      sole_.take(fd, path);
-    } catch (...) {
-      ::close(fd);
-      throw;
-    }
-  }
-  gzFile_s* gz = nullptr;
+  if (fd < 0 || fstat(fd, &info) != 0) fail(errno);
+  if (S_ISDIR(info.st_mode)) fail(EISDIR);
+  if (!standard_input) sole_.take(fd, path);
+  decltype(gz_) gz(nullptr, gzclose);
   if (S_ISREG(info.st_mode) && !standard_input && is_gzip(fd)) {
-    gz = gzdopen(fd, "rb");
-    if (gz == nullptr) {
-      ::close(fd);
-      fail(path);
-    }
-    gzdirect(gz);  // reads the header now, so that zlib's buffers are allocated before the first fill()
+    gz.reset(gzdopen(fcntl(fd, F_DUPFD_CLOEXEC, 0), "rb"));
+    if (gz == nullptr) fail(errno);
+    gzdirect(gz.get());  // reads the header now, so that zlib's buffers are allocated before the first fill()
   }
-  close_file();
-  if (standard_input) sole_.release();
-  fd_ = fd;
-  gz_ = gz;
-  owned_ = !standard_input;
+  fd_ = std::move(fd);
+  gz_ = std::move(gz);
   regular_ = S_ISREG(info.st_mode);
-  fifo_ = S_ISFIFO(info.st_mode) && owned_;
-  // Flags of a foreign standard input are not changed.
-  const int flags = fcntl(fd, F_GETFL);
-  blocks_ = S_ISFIFO(info.st_mode) && flags >= 0 &&
-            (owned_ ? fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) == 0 : (flags & O_NONBLOCK) == 0);
+  fifo_ = S_ISFIFO(info.st_mode) && !standard_input;
   buffer_.resize(kCapacity);
   begin_ = end_ = 0;
 }
 
 void ByteFile::close() noexcept {
   sole_.release();
-  close_file();
-}
-
-void ByteFile::close_file() noexcept {
-  if (gz_ != nullptr)
-    gzclose(gz_);
-  else if (fd_ >= 0 && owned_)
-    ::close(fd_);
-  gz_ = nullptr;
-  fd_ = -1;
+  gz_.reset();
+  fd_.close();
 }
 
 bool ByteFile::is_removed() const noexcept {
@@ -96,13 +66,13 @@ ByteFile::Fill ByteFile::fill() noexcept {
   const std::size_t room = buffer_.size() - end_;
   if (room == 0) return Fill::more;
   if (gz_ != nullptr) {
-    const int n = gzread(gz_, buffer_.data() + end_, static_cast<unsigned>(room));
+    const int n = gzread(gz_.get(), buffer_.data() + end_, static_cast<unsigned>(room));
     if (n > 0) {
       end_ += static_cast<std::size_t>(n);
       return Fill::more;
     }
     int error = Z_OK;
-    gzerror(gz_, &error);
+    gzerror(gz_.get(), &error);
     if (error == Z_ERRNO) return Fill::error;
     return error == Z_OK || error == Z_STREAM_END ? Fill::end : Fill::truncated;
   }

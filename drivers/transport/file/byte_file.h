@@ -4,11 +4,14 @@
 
 #include <zlib.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "drivers/system/fd.h"
 #include "drivers/transport/sole_reader.h"
 
 namespace ifog {
@@ -17,16 +20,11 @@ class ByteFile {
  public:
   enum class Fill {
     more,       // bytes were added, or the buffer is full
-    none,       // no data now (poll fd()), or interrupted while waiting
+    none,       // no data now
     end,        // end of a file, or the FIFO's writer closed it
     error,      // see errno
     truncated,  // a truncated or damaged gzip stream
   };
-
-  ByteFile() = default;
-  ~ByteFile() { close(); }
-  ByteFile(const ByteFile&) = delete;
-  ByteFile& operator=(const ByteFile&) = delete;
 
   // Throws OpenError. An open file is closed only after the new one is open, so that a reopened FIFO loses
   // nothing from a new writer.
@@ -38,9 +36,6 @@ class ByteFile {
   // Readable if fill() may return data; −1: always (regular file).
   [[nodiscard]] int poll_fd() const { return regular_ ? -1 : fd_; }
 
-  // True: fill() waits for data (pipes only).
-  [[nodiscard]] bool blocks() const { return blocks_; }
-
   // Reads once, without allocating.
   Fill fill() noexcept;
   [[nodiscard]] std::span<const std::uint8_t> unread() const {
@@ -51,12 +46,10 @@ class ByteFile {
   static constexpr std::size_t kCapacity = 1U << 16U;
 
  private:
-  void close_file() noexcept;
-
   SoleReader sole_;
-  int fd_ = -1;
-  bool owned_ = false, regular_ = false, fifo_ = false, blocks_ = false;
-  gzFile_s* gz_ = nullptr;
+  Fd fd_;
+  bool regular_ = false, fifo_ = false;
+  std::unique_ptr<gzFile_s, int (*)(gzFile_s*)> gz_{nullptr, gzclose};  // with a descriptor of its own
   std::vector<std::uint8_t> buffer_;
   std::size_t begin_ = 0, end_ = 0;
 };

@@ -42,14 +42,9 @@ class FileTransport : public Transport {
   }
   Delivery receive(std::int64_t until_ns) noexcept override;
 
-  [[nodiscard]] const FileSettings& settings() const { return settings_; }
   [[nodiscard]] bool recorded() const { return settings_.pace == FileSettings::Pace::recorded; }
-  [[nodiscard]] std::span<const std::uint8_t> unread() const { return file_.unread(); }
-  void consume(std::size_t n) { file_.consume(n); }
-  [[nodiscard]] bool at_end() const { return at_end_; }
-  [[nodiscard]] const Pace& pace() const { return pace_; }
 
-  // Adds to unread(), waiting until `until_ns`. False: no data, or end of file.
+  // Adds to the file's unread bytes, waiting until `until_ns`. False: no data, or end of file.
   bool fill(std::int64_t until_ns) noexcept;
   // Waits until the recorded time is due; false if `until_ns` or stop() comes first.
   bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
@@ -59,18 +54,17 @@ class FileTransport : public Transport {
   // Returns one delivery from the unread bytes; empty if there are too few.
   virtual Delivery take(std::int64_t until_ns) noexcept = 0;
 
+  FileSettings settings_;
+  ByteFile file_;
+  Pace pace_;
+  bool at_end_ = false;
+
  private:
   void reopen();
   void finish() noexcept;
 
-  FileSettings settings_;
-  ByteFile file_;
-  Pace pace_;
   int read_error_ = 0;
-  bool at_end_ = false;
-  // Data have been written since it was opened. Until then it is polled, because reading a FIFO without a
-  // writer looks like its end.
-  bool written_ = false;
+  bool written_ = false;  // data have been written since it was opened
 };
 
 // opening() is not sent to a recording.
@@ -83,7 +77,7 @@ void FileTransport::reopen() {
 
 Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
   const Delivery delivery = take(until_ns);
-  const bool ends = at_end_ && unread().empty() && state() != TransportState::ended;
+  const bool ends = at_end_ && file_.unread().empty() && state() != TransportState::ended;
   // A FIFO that was made again is another one.
   if (delivery.empty() && (ends || (!written_ && file_.is_removed()))) finish();
   return delivery;
@@ -111,21 +105,11 @@ void FileTransport::finish() noexcept {
 
 bool FileTransport::fill(std::int64_t until_ns) noexcept {
   while (!at_end_) {
-    ByteFile::Fill filled = ByteFile::Fill::none;
-    const auto read = [&](bool) -> ssize_t {
-      filled = file_.fill();
-      return filled == ByteFile::Fill::more ? 1 : filled == ByteFile::Fill::end ? 0 : -1;
-    };
-    int error = 0;
     if (file_.poll_fd() >= 0) {
-      const Received got = waiting_.receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
-      if (got.wake != Wake::ready) return false;
-      error = got.error;
+      if (waiting_.wait(file_.poll_fd(), POLLIN, until_ns) != Wake::ready) return false;
       written_ = true;
-    } else if (read(true) < 0) {
-      error = errno;
     }
-    switch (filled) {
+    switch (file_.fill()) {
       case ByteFile::Fill::more:
         return true;
       case ByteFile::Fill::none:
@@ -135,7 +119,7 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
         at_end_ = true;
         break;
       case ByteFile::Fill::error:
-        read_error_ = error;
+        read_error_ = errno;
         at_end_ = true;
         break;
       case ByteFile::Fill::end:
@@ -150,15 +134,14 @@ bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexc
   if (!pace_.started()) pace_.start(recorded_ns, monotonic_ns());
   const std::int64_t due = pace_.due_ns(recorded_ns);
   if (due <= monotonic_ns()) return true;
-  short happened = 0;
-  return waiting_.wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
+  return waiting_.wait(-1, 0, std::min(due, until_ns)) != Wake::stopped && due <= until_ns;
 }
 
 class BytesFile final : public FileTransport {
  public:
   explicit BytesFile(FileSettings settings) : FileTransport(std::move(settings)) {
-    const double rate = this->settings().bytes_per_second * this->settings().speed;
-    block_ = std::min<std::size_t>(this->settings().block_bytes, ByteFile::kCapacity);
+    const double rate = settings_.bytes_per_second * settings_.speed;
+    block_ = std::min<std::size_t>(settings_.block_bytes, ByteFile::kCapacity);
     if (block_ == 0)
       block_ = static_cast<std::size_t>(std::max(1.0, std::min(rate / 1000.0, ByteFile::kCapacity / 2.0)));
   }
@@ -171,22 +154,22 @@ class BytesFile final : public FileTransport {
   Delivery take(std::int64_t until_ns) noexcept override;
   // Recorded time of the end of the first n bytes.
   [[nodiscard]] std::int64_t recorded_ns(std::uint64_t n) const {
-    return std::llround(static_cast<double>(n) / settings().bytes_per_second * 1e9);
+    return std::llround(static_cast<double>(n) / settings_.bytes_per_second * 1e9);
   }
 
   std::size_t block_;
-  std::size_t held_ = 0;  // part of unread() returned by the previous delivery
+  std::size_t held_ = 0;  // part of file_.unread() returned by the previous delivery
   std::int64_t opened_ns_ = 0;
   std::uint64_t delivered_ = 0;
 };
 
 Delivery BytesFile::take(std::int64_t until_ns) noexcept {
-  consume(std::exchange(held_, 0));
+  file_.consume(std::exchange(held_, 0));
   const std::size_t wanted = recorded() ? block_ : 1;
-  while (unread().size() < wanted && fill(until_ns)) {
+  while (file_.unread().size() < wanted && fill(until_ns)) {
   }
-  std::size_t n = unread().size();
-  if (n == 0 || (n < wanted && !at_end())) return {};
+  std::size_t n = file_.unread().size();
+  if (n == 0 || (n < wanted && !at_end_)) return {};
   if (recorded()) {
     n = std::min(n, block_);
     if (!await(recorded_ns(delivered_ + n), until_ns)) return {};
@@ -194,8 +177,8 @@ Delivery BytesFile::take(std::int64_t until_ns) noexcept {
   held_ = n;
   delivered_ += n;
   Delivery delivery;
-  delivery.bytes = unread().first(n);
-  if (recorded() || settings().bytes_per_second <= 0.0)
+  delivery.bytes = file_.unread().first(n);
+  if (recorded() || settings_.bytes_per_second <= 0.0)
     delivery.arrival_ns = delivery.read_ns = arrival_clock_ns();
   else
     delivery.arrival_ns = opened_ns_ + recorded_ns(delivered_);
@@ -234,10 +217,10 @@ class CandumpFile final : public FileTransport {
 };
 
 bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
-  if (!settings().interface.empty() && entry.interface != settings().interface) return false;
-  if (settings().ids.empty()) return true;
+  if (!settings_.interface.empty() && entry.interface != settings_.interface) return false;
+  if (settings_.ids.empty()) return true;
   const bool extended = (entry.frame.flags & IFOG_CAN_EXTENDED) != 0;
-  return std::any_of(settings().ids.begin(), settings().ids.end(),
+  return std::any_of(settings_.ids.begin(), settings_.ids.end(),
                      [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
 }
 
@@ -260,22 +243,22 @@ bool CandumpFile::of_one_device() noexcept {
 // The line stays valid until the next fill().
 bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexcept {
   for (;;) {
-    const std::span<const std::uint8_t> bytes = unread();
+    const std::span<const std::uint8_t> bytes = file_.unread();
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     const auto* newline =
         bytes.empty() ? nullptr : static_cast<const char*>(std::memchr(text, '\n', bytes.size()));
     if (newline == nullptr && bytes.size() == ByteFile::kCapacity) {
       if (!std::exchange(overlong_, true))
         report("a line of more than 64 KiB, this is no candump log", line_ + 1);
-      consume(bytes.size());
-    } else if (newline != nullptr || (at_end() && !bytes.empty())) {
+      file_.consume(bytes.size());
+    } else if (newline != nullptr || (at_end_ && !bytes.empty())) {
       const std::size_t length = newline != nullptr ? static_cast<std::size_t>(newline - text) : bytes.size();
       ++line_;
-      consume(newline != nullptr ? length + 1 : length);
+      file_.consume(newline != nullptr ? length + 1 : length);
       if (std::exchange(overlong_, false)) continue;
       line = {text, length};
       return true;
-    } else if (!fill(until_ns) && !(at_end() && !unread().empty())) {
+    } else if (!fill(until_ns) && !(at_end_ && !file_.unread().empty())) {
       return false;
     }
   }
@@ -299,10 +282,10 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
         counters_.error_frames.add(1);
         break;
       case CandumpLine::malformed:
-        report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
+        report(at_end_ && file_.unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
         break;
       case CandumpLine::drops:
-        if (settings().interface.empty() || entry_.interface == settings().interface)
+        if (settings_.interface.empty() || entry_.interface == settings_.interface)
           counters_.kernel_drops.add(entry_.dropped);
         break;
       case CandumpLine::remote:
@@ -321,11 +304,11 @@ Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
     if (!next_frame(until)) break;
     const bool timed = entry_.stamp != CandumpStamp::none;
     if (recorded() && timed) {
-      if (!pace().started()) shift_ns_ = arrival_clock_ns() - monotonic_ns();
+      if (!pace_.started()) shift_ns_ = arrival_clock_ns() - monotonic_ns();
       if (!await(entry_.frame.arrival_ns, until)) break;
     }
     batch_[n] = entry_.frame;
-    if (recorded() && timed) batch_[n].arrival_ns = pace().due_ns(entry_.frame.arrival_ns) + shift_ns_;
+    if (recorded() && timed) batch_[n].arrival_ns = pace_.due_ns(entry_.frame.arrival_ns) + shift_ns_;
     if (!timed) batch_[n].arrival_ns = arrival_clock_ns();
     ++n;
     pending_ = false;

@@ -9,15 +9,16 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/network/ip_socket.h"
-#include "drivers/transport/network/server_words.h"
 #include "drivers/transport/receiving_socket.h"
 
 namespace ifog {
@@ -27,6 +28,54 @@ namespace {
 constexpr std::int64_t kAttempt_ns = 500'000'000;
 constexpr std::int64_t kHearOut_ns = 300'000'000;
 constexpr int kQuietBeforeProbe_s = 1, kProbeEvery_s = 1, kProbes = 2;
+
+// Detects texts of a serial-to-TCP server: a message before it closes ("Port already in use"), and telnet
+// (RFC 854), which doubles each byte FF and inserts commands.
+class ServerWords {
+ public:
+  void connected() noexcept { *this = {}; }
+  void came(std::span<const std::uint8_t> bytes) noexcept {
+    if (length_ < text_.size())
+      std::copy_n(bytes.begin(), std::min(bytes.size(), text_.size() - length_), text_.begin() + length_);
+    length_ += bytes.size();
+    if (runs_ < kShow) count_runs(bytes);
+  }
+  // All received bytes if they are a sentence; else "".
+  [[nodiscard]] std::string_view sentence() const noexcept {
+    std::string_view text(text_.data(), std::min(length_, text_.size()));
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
+    const auto spoken = [](char c) { return (c >= ' ' && c <= '~') || c == '\r' || c == '\n' || c == '\t'; };
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const bool words = length_ <= text_.size() && std::ranges::all_of(text, spoken) &&
+                       2 * std::ranges::count_if(text, letter) > static_cast<long>(text.size());
+    return words ? text : std::string_view();
+  }
+  // True if it started with a telnet command, or doubled every FF.
+  [[nodiscard]] bool telnet() const noexcept {
+    const auto at = [this](std::size_t i) { return static_cast<std::uint8_t>(text_[i]); };
+    const bool command = length_ >= 3 && at(0) == 0xFF && at(1) >= 0xFB && at(1) <= 0xFE && at(2) < 0x40;
+    return command || (runs_ >= kShow && odd_ == 0);
+  }
+
+ private:
+  static constexpr int kShow = 32;  // runs of FF; without doubling half of them are odd
+
+  void count_runs(std::span<const std::uint8_t> bytes) noexcept {
+    for (const std::uint8_t byte : bytes) {
+      if (byte == 0xFF) {
+        ++run_;
+      } else if (run_ > 0) {
+        ++runs_;
+        odd_ += run_ % 2;
+        run_ = 0;
+      }
+    }
+  }
+
+  std::array<char, 200> text_{};
+  std::size_t length_ = 0;
+  int run_ = 0, runs_ = 0, odd_ = 0;
+};
 
 class TcpTransport final : public Transport {
  public:
@@ -38,10 +87,7 @@ class TcpTransport final : public Transport {
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
-  [[nodiscard]] bool more_waits() noexcept override {
-    pollfd socket{socket_.fd(), POLLIN, 0};
-    return ::poll(&socket, 1, 0) > 0;
-  }
+  [[nodiscard]] bool more_waits() noexcept override { return waiting_.is_readable(socket_.fd()); }
   void begin();
   void check_answer();
   void send_opening();
@@ -52,7 +98,6 @@ class TcpTransport final : public Transport {
   TcpSettings settings_;
   IpAddress host_;
   IpSocket socket_;
-  bool blocks_ = false;
   std::int64_t limit_ns_ = 0;  // deadline of the present attempt
   ServerWords words_;
   bool turned_away_ = false;  // the last connection sent a message and was closed
@@ -70,8 +115,7 @@ void TcpTransport::refuse(const std::string& what, int error, const std::string&
 bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   // An open socket here is an attempt of the previous call.
   if (!socket_.is_open()) begin();
-  short happened = 0;
-  switch (waiting_.wait(socket_.fd(), POLLOUT, std::min(until_ns, limit_ns_), happened)) {
+  switch (waiting_.wait(socket_.fd(), POLLOUT, std::min(until_ns, limit_ns_))) {
     case Wake::stopped:
       return false;
     case Wake::timeout:
@@ -86,7 +130,6 @@ bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   words_.connected();
   if (turned_away_) hear_out(monotonic_ns() + kHearOut_ns);
   send_opening();
-  blocks_ = StoppableWait::let_block(socket_.fd());
   return true;
 }
 
@@ -127,7 +170,7 @@ void TcpTransport::hear_out(std::int64_t until_ns) {
   std::array<std::uint8_t, 256> said{};
   for (ssize_t n = 0;;) {
     short happened = 0;
-    if (waiting_.wait(socket_.fd(), POLLIN | POLLRDHUP, until_ns, happened) != Wake::ready) break;
+    if (waiting_.wait(socket_.fd(), POLLIN | POLLRDHUP, until_ns, &happened) != Wake::ready) break;
     n = recv(socket_.fd(), said.data(), said.size(), MSG_PEEK | MSG_DONTWAIT);
     words_.connected();
     if (n > 0) words_.came(std::span(said).first(static_cast<std::size_t>(n)));
@@ -162,29 +205,27 @@ void TcpTransport::send_opening() {
 }
 
 Delivery TcpTransport::receive(std::int64_t until_ns) noexcept {
+  if (waiting_.wait(socket_.fd(), POLLIN, until_ns) != Wake::ready) return {};
   iovec room{buffer_.data(), buffer_.size()};
   msghdr message{};
   message.msg_iov = &room;
   message.msg_iovlen = 1;
   message.msg_control = control_.bytes;
   message.msg_controllen = sizeof control_.bytes;
-  const Received got = waiting_.receive_by(socket_.fd(), blocks_, until_ns, [&](bool may_wait) {
-    return recvmsg(socket_.fd(), &message, may_wait ? 0 : MSG_DONTWAIT);
-  });
-  if (got.wake != Wake::ready) return {};
-  if (got.n > 0) {
+  const ssize_t n = recvmsg(socket_.fd(), &message, MSG_DONTWAIT);
+  if (n > 0) {
     Delivery delivery;
     delivery.arrival_ns = delivery.read_ns = arrival_clock_ns();
     stamps_.begin(realtime_ns(), delivery.arrival_ns);
     if (const ReceiveControl said = receive_control(message); said.arrival_ns != 0)
       delivery.arrival_ns = stamps_.on_arrival_clock(said.arrival_ns);
-    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
+    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
     words_.came(delivery.bytes);
     if (words_.telnet() && !std::exchange(telnet_reported_, true))
       report("the server speaks telnet, which doubles every byte FF: set its port to raw", 0);
     return delivery;
   }
-  const int error = got.n < 0 ? got.error : ECONNRESET;
+  const int error = n < 0 ? errno : ECONNRESET;
   if (error == EINTR || error == EAGAIN) return {};
   hung_up(error);
   return {};

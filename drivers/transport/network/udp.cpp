@@ -76,25 +76,20 @@ class UdpTransport final : public Transport {
   // Datagrams of one system call.
   struct Batch {
     std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
-    std::array<iovec, kDatagramsAtOnce> vectors{};
     std::array<sockaddr_storage, kDatagramsAtOnce> senders{};
-    std::array<ControlRoom, kDatagramsAtOnce> control{};
-    std::array<mmsghdr, kDatagramsAtOnce> messages{};
+    ReceiveBatch<kDatagramsAtOnce> messages;
     std::array<Arrival, kDatagramsAtOnce> arrivals{};
-    std::size_t filled = kDatagramsAtOnce;  // number of messages to be prepared
-    std::size_t count = 0, next = 0;        // number read; next to be delivered
+    std::size_t count = 0, next = 0;  // number read; next to be delivered
   };
 
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   [[nodiscard]] bool more_waits() noexcept override {
-    pollfd socket{socket_.fd(), POLLIN, 0};
-    return batch_.next < batch_.count || ::poll(&socket, 1, 0) > 0;
+    return batch_.next < batch_.count || waiting_.is_readable(socket_.fd());
   }
   void join(const IpSocket& socket) const;
   void send_opening(const IpSocket& socket) const;
   void look_at_interface() noexcept;
-  int receive_batch(bool may_wait) noexcept;
   void take(std::size_t received) noexcept;
   void give_up(int error) noexcept;
   Delivery next() noexcept;
@@ -109,7 +104,6 @@ class UdpTransport final : public Transport {
   std::uint16_t sends_from_ = 0;  // the host's sending port; 0: none yet
   std::int64_t sent_ns_ = 0;      // time of its last datagram
   KernelStamps stamps_;
-  bool blocks_ = false;
   Batch batch_;
 };
 
@@ -121,14 +115,8 @@ UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
                                        settings.port)),
       settings_(settings),
       addresses_(std::move(addresses)) {
-  for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
-    batch_.vectors[i] = {&batch_.bytes[i * kLongest], kLongest};
-    msghdr& header = batch_.messages[i].msg_hdr;
-    header.msg_iov = &batch_.vectors[i];
-    header.msg_iovlen = 1;
-    header.msg_control = batch_.control[i].bytes;
-    header.msg_name = &batch_.senders[i];
-  }
+  for (std::size_t i = 0; i < kDatagramsAtOnce; ++i)
+    batch_.messages.place(i, {&batch_.bytes[i * kLongest], kLongest}, &batch_.senders[i]);
 }
 
 bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
@@ -155,7 +143,6 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_times(fresh.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   send_opening(fresh);
-  blocks_ = StoppableWait::let_block(fresh.fd());
   socket_ = std::move(fresh);
   return true;
 }
@@ -192,14 +179,13 @@ void UdpTransport::send_opening(const IpSocket& socket) const {
 Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
   if (const Delivery waiting = next(); !waiting.empty()) return waiting;
   batch_.count = batch_.next = 0;
-  const Received got = waiting_.receive_by(
-      socket_.fd(), blocks_, until_ns, [this](bool may_wait) { return ssize_t{receive_batch(may_wait)}; });
-  if (got.wake == Wake::timeout) look_at_interface();
-  if (got.wake != Wake::ready) return {};
-  if (got.n > 0)
-    take(static_cast<std::size_t>(got.n));
+  const Wake wake = waiting_.wait(socket_.fd(), POLLIN, until_ns);
+  if (wake == Wake::timeout) look_at_interface();
+  if (wake != Wake::ready) return {};
+  if (const int n = batch_.messages.receive(socket_.fd()); n > 0)
+    take(static_cast<std::size_t>(n));
   else
-    give_up(got.n < 0 ? got.error : EAGAIN);
+    give_up(n < 0 ? errno : EAGAIN);
   return next();
 }
 
@@ -214,20 +200,6 @@ void UdpTransport::look_at_interface() noexcept {
   lost(ENODEV);
 }
 
-int UdpTransport::receive_batch(bool may_wait) noexcept {
-  // Resets the messages that the previous call used.
-  for (std::size_t i = 0; i < batch_.filled; ++i) {
-    batch_.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
-    batch_.messages[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
-    batch_.messages[i].msg_hdr.msg_flags = 0;
-  }
-  const int n = recvmmsg(socket_.fd(), batch_.messages.data(), kDatagramsAtOnce,
-                         may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
-  // A failed message may be partly filled.
-  batch_.filled = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
-  return n;
-}
-
 void UdpTransport::give_up(int error) noexcept {
   // ECONNREFUSED answers the opening bytes if the sensor does not listen yet.
   if (error == EINTR || error == EAGAIN || error == ECONNREFUSED) return;
@@ -240,7 +212,7 @@ void UdpTransport::take(std::size_t received) noexcept {
   const std::int64_t read_at = arrival_clock_ns();
   stamps_.begin(realtime_ns(), read_at);
   for (std::size_t i = 0; i < batch_.count; ++i) {
-    const ReceiveControl said = receive_control(batch_.messages[i].msg_hdr);
+    const ReceiveControl said = batch_.messages.control(i);
     if (said.has_drops) {
       counters_.kernel_drops.add(said.drops - drops_);  // modulo 2^32, as in the kernel
       drops_ = said.drops;
@@ -264,7 +236,7 @@ bool UdpTransport::is_of_port(std::size_t i) noexcept {
 
 Delivery UdpTransport::next() noexcept {
   for (; batch_.next < batch_.count; ++batch_.next) {
-    const std::size_t i = batch_.next, length = batch_.messages[i].msg_len;
+    const std::size_t i = batch_.next, length = batch_.messages.length(i);
     if (addresses_.host && !addresses_.host->is_host_of(batch_.senders[i])) {
       report("datagrams from another host, which are dropped", 0);
       continue;

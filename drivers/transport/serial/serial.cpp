@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/transport/serial/serial.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "drivers/transport/serial/set_up_dialogue.h"
 
 #include <poll.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,15 +23,6 @@ constexpr std::int64_t kAnswerLimit_ns = 500'000'000;
 // The slowest rate of a KVH 1750 is 1 Hz.
 constexpr std::int64_t kSilentLimit_ns = 1'200'000'000;
 
-// Makes reads wait for the first byte and return all available. False: not possible, the line must be polled.
-bool wait_for_bytes(int fd) {
-  termios line{};
-  if (tcgetattr(fd, &line) != 0) return false;
-  line.c_cc[VMIN] = 1;
-  line.c_cc[VTIME] = 0;
-  return tcsetattr(fd, TCSANOW, &line) == 0;
-}
-
 class SerialTransport final : public Transport {
  public:
   SerialTransport(const SerialSettings& settings, SerialOpener open_port)
@@ -41,10 +31,7 @@ class SerialTransport final : public Transport {
  private:
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
-  [[nodiscard]] bool more_waits() noexcept override {
-    pollfd port{port_ ? port_->fd() : -1, POLLIN, 0};
-    return ::poll(&port, 1, 0) > 0;
-  }
+  [[nodiscard]] bool more_waits() noexcept override { return waiting_.is_readable(port_ ? port_->fd() : -1); }
   void send(std::span<const std::uint8_t> rest);
   bool set_up(std::int64_t until_ns);
   [[noreturn]] void refuse_answer();
@@ -58,7 +45,7 @@ class SerialTransport final : public Transport {
   std::int64_t received_ns_ = 0;           // last byte, CLOCK_MONOTONIC
   bool tried_ = false;
   LineErrors errors_;
-  bool errors_known_ = false, blocks_ = false;
+  bool errors_known_ = false;
   std::int64_t next_errors_ns_ = 0;
   std::array<std::uint8_t, 16384> buffer_{};
 };
@@ -77,7 +64,6 @@ bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
   dialogue_.reset();
   send(opening());
   received_ns_ = monotonic_ns();
-  blocks_ = wait_for_bytes(port_->fd()) && StoppableWait::let_block(port_->fd());
   errors_known_ = port_->errors(errors_);
   next_errors_ns_ = arrival_clock_ns() + kErrorPeriod_ns;
   return true;
@@ -91,8 +77,7 @@ bool SerialTransport::set_up(std::int64_t until_ns) {
       send({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
       answer_by_ns_ = monotonic_ns() + kAnswerLimit_ns;
     }
-    short happened = 0;
-    const Wake wake = waiting_.wait(port_->fd(), POLLIN, std::min(until_ns, answer_by_ns_), happened);
+    const Wake wake = waiting_.wait(port_->fd(), POLLIN, std::min(until_ns, answer_by_ns_));
     if (wake == Wake::stopped) return false;
     const ssize_t n = wake == Wake::ready ? ::read(port_->fd(), buffer_.data(), buffer_.size()) : 0;
     const std::span<const std::uint8_t> bytes(buffer_);
@@ -134,9 +119,8 @@ void SerialTransport::send(std::span<const std::uint8_t> rest) {
     }
     int error = n < 0 ? errno : EIO;
     if (error == EINTR) continue;
-    short happened = 0;
     if (error == EAGAIN) {
-      if (waiting_.wait(port_->fd(), POLLOUT, limit, happened) == Wake::ready) continue;
+      if (waiting_.wait(port_->fd(), POLLOUT, limit) == Wake::ready) continue;
       error = ETIMEDOUT;
     }
     port_.reset();
@@ -146,9 +130,10 @@ void SerialTransport::send(std::span<const std::uint8_t> rest) {
 }
 
 Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
-  const Received got = waiting_.receive_by(port_->fd(), blocks_, until_ns, [&](bool) {
-    return ::read(port_->fd(), buffer_.data(), buffer_.size());
-  });
+  short happened = 0;
+  const Wake wake = waiting_.wait(port_->fd(), POLLIN, until_ns, &happened);
+  const ssize_t n = wake == Wake::ready ? ::read(port_->fd(), buffer_.data(), buffer_.size()) : 0;
+  const int error = n < 0 ? errno : 0;
   Delivery delivery;
   delivery.read_ns = arrival_clock_ns();
   if (delivery.read_ns >= next_errors_ns_) {
@@ -157,26 +142,22 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   }
   if (!settings_.set_up.empty()) {
     const std::int64_t now_ns = monotonic_ns();
-    if (got.n > 0) received_ns_ = now_ns;
+    if (n > 0) received_ns_ = now_ns;
     if (now_ns - received_ns_ > kSilentLimit_ns) {
       port_.reset();
       lost(ETIMEDOUT);
       return {};
     }
   }
-  if (got.wake != Wake::ready) return {};
-  if (got.n > 0) {
+  if (wake != Wake::ready) return {};
+  if (n > 0) {
     delivery.arrival_ns = delivery.read_ns;
-    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
+    delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(n));
     return delivery;
   }
   // No data is no fault (another process may have read them), a hang-up is.
-  const int error = got.error;
-  const bool hung_up = (got.happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
-  if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) {
-    blocks_ = false;  // it does not wait for bytes: another process changed the settings
-    return {};
-  }
+  const bool hung_up = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) return {};
   count_losses();
   // Closed at once, since the kernel would give a returning USB adapter another name.
   port_.reset();

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/transport/transport.h"
+
 namespace ifog {
 
 struct SerialSettings {
@@ -48,5 +50,14 @@ using SerialOpener = std::function<std::unique_ptr<SerialPort>(const SerialSetti
 // Raw, no flow control, old input discarded. The speed is read back and rejected if more than 2 % off (limit
 // of an asynchronous 10-bit line), as some UARTs silently keep another.
 std::unique_ptr<SerialPort> open_serial_port(const SerialSettings& settings, std::string& warning);
+
+// Serial transport, which reopens a returning line within about 0.1 s.
+// Arrival times are read right after the bytes. Overruns of UART and kernel are counted as kernel drops,
+// framing and parity errors and breaks as error frames, if the driver reports them (TIOCGICOUNT): ten times a
+// second, at a hang-up and after the last read. With `set_up` the device is set up whenever the line opens,
+// and after a silence of more than a second (power may have been off). A wrong or missing answer counts as a
+// failed opening. `open_port` is for tests, as libserialport accepts no pseudo terminal.
+std::unique_ptr<Transport> make_serial_transport(const SerialSettings& settings,
+                                                 SerialOpener open_port = open_serial_port);
 
 }  // namespace ifog

@@ -6,6 +6,7 @@
 //   heading_bench [--hours H] [--sensors N]     exit 1 if an angle is off by more than 1e-9 rad
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -77,7 +78,7 @@ class DayTransport final : public Transport {
       return {};
     }
     const bool overload = given_ % (kCalm + kOverload) >= kCalm;
-    if (!overload && given_ - filter_->counters().device_samples.value() > 3 * kSlots / 4) {
+    if (!overload && given_ - taken_->load() > 3 * kSlots / 4) {
       // An empty delivery, so that the reader tries to store what it has merged.
       std::this_thread::sleep_for(200us);
       return {};
@@ -90,12 +91,13 @@ class DayTransport final : public Transport {
     given_ += n;
     return out;
   }
-  void follow(FilterStage& filter) { filter_ = &filter; }
+  // taken: samples that the filter has published.
+  void follow(const std::atomic<std::uint64_t>& taken) { taken_ = &taken; }
 
  private:
   const Block& block_;
   std::uint64_t frames_, given_ = 0;
-  FilterStage* filter_ = nullptr;
+  const std::atomic<std::uint64_t>* taken_ = nullptr;
 };
 
 // Decodes the messages as a subscriber would.
@@ -105,6 +107,7 @@ class SummingPublisher final : public Publisher {
     if (last.decode(message.data(), 0, static_cast<int>(message.size())) < 0) return false;
     ++messages;
     samples += last.merged;
+    taken += static_cast<std::uint64_t>(last.merged);
     gaps += (last.flags & rate_t::FLAG_GAP) != 0 ? 1 : 0;
     resets += (last.flags & rate_t::FLAG_FILTER_RESET) != 0 ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -115,6 +118,7 @@ class SummingPublisher final : public Publisher {
   }
   rate_t last{};
   std::int64_t messages = 0, samples = 0, gaps = 0, resets = 0, not_finite = 0;
+  std::atomic<std::uint64_t> taken{0};
   std::array<ExactSum, 3> sum;
   std::array<double, 3> residual_rad{};
 };
@@ -135,7 +139,7 @@ struct Sensor {
     publisher = summing.get();
     pipeline = std::make_unique<Pipeline>(plan, std::move(day), std::move(driver), nullptr,
                                           std::make_unique<ChainParts>(chain), std::move(summing));
-    transport->follow(pipeline->filter());
+    transport->follow(publisher->taken);
     pipeline->open();
   }
   ChainSettings chain;

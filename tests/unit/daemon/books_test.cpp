@@ -32,34 +32,35 @@ TEST(Books, NoRunLeavesADescriptorOrMemoryBehind) {
 }
 
 TEST(Books, AnImbalanceIsSaidWithItsNumbers) {
-  const ReaderBooks reader{.bytes_read = 100,
-                           .bytes_framed = 72,
-                           .bytes_skipped = 20,
-                           .bytes_pending = 8,
-                           .decoded = 3,
-                           .samples = 2,
-                           .repeated = 1};
+  ReaderBooks reader;
+  reader.line.bytes = 100;
+  reader.driver.bytes_framed = 72;
+  reader.driver.bytes_skipped = 20;
+  reader.driver.bytes_pending = 8;
+  reader.decoded = 3;
+  reader.counts.samples = 2;
+  reader.counts.repeated = 1;
   const FilterBooks filter{.samples = 2, .sent = 1, .failed = 0, .merged = 1};
   EXPECT_EQ(imbalance(reader, filter), "");
   ReaderBooks wrong = reader;
-  wrong.bytes_pending = 7;
+  wrong.driver.bytes_pending = 7;
   EXPECT_EQ(imbalance(wrong, filter),
             "the books do not balance: 100 bytes read, 72 in frames + 20 skipped + 7 pending");
   wrong = reader;
-  wrong.frames_read = 9;
-  wrong.frames_good = 5;
-  wrong.frames_refused = 1;
-  wrong.frames_other = 3;
+  wrong.line.frames = 9;
+  wrong.driver.frames_good = 5;
+  wrong.driver.frames_format = 1;
+  wrong.driver.frames_other = 3;
   EXPECT_EQ(imbalance(wrong, filter), "");
-  wrong.frames_other = 2;
+  wrong.driver.frames_other = 2;
   EXPECT_EQ(imbalance(wrong, filter),
             "the books do not balance: 9 CAN frames read, 5 decoded + 1 refused + 2 none of the sensor's");
   wrong = reader;
-  wrong.repeated = 0;
+  wrong.counts.repeated = 0;
   EXPECT_EQ(imbalance(wrong, filter), "the books do not balance: 3 samples decoded, 2 accepted + 0 repeated");
   wrong = reader;
   wrong.decoded = 2;
-  wrong.samples = 1;
+  wrong.counts.samples = 1;
   EXPECT_NE(imbalance(wrong, filter), "");  // more filtered than read
   FilterBooks lost = filter;
   lost.merged = 0;

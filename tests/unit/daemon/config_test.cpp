@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/config.h"
+#include "daemon/sensor/flight_header.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/config_complaint.h"
@@ -176,20 +177,37 @@ TEST(Config, ReadsANetworkSensor) {
   EXPECT_EQ(udp.sensors[0].restart_for(tcp.sensors[0]), "transport");
 }
 
-// What each setting may be is the transport's to say: udp_complaint() and tcp_complaint().
 TEST(Config, NamesWhatIsWrongWithANetworkSensor) {
-  for (const auto& [transport, place] :
-       {std::pair{"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
-        {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
-        {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
-        {"type = \"udp\"\nport = 5000\nbind = \"::1\"\nhost = \"10.0.0.1\"\n",
-         "8: sensor.transport.host = '10.0.0.1': "},
-        {"type = \"tcp\"\nport = 4001\n", "4: sensor.transport.host: missing; "},
-        {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n", "6: sensor.transport.host = 'gyro.local': "},
-        {"type = \"tcp\"\nhost = \"10.0.0.1\"\nport = 4001\nbaud = 9600\n",
-         "8: sensor.transport.baud: unknown key; "}})
-    EXPECT_TRUE(complaint(network(transport)).starts_with(std::string("f.toml:") + place))
+  const std::string udp = "type = \"udp\"\nport = 5000\n", tcp = "type = \"tcp\"\nport = 4001\n";
+  for (const auto& [transport, place] : std::initializer_list<std::pair<std::string, std::string>>{
+           {"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
+           {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
+           {udp + "bind = \"here\"\n",
+            "7: sensor.transport.bind = 'here': expected a numeric address of this "},
+           {udp + "bind = \"239.1.2.3\"\n", "7: sensor.transport.bind = '239.1.2.3': "},
+           {udp + "interface = \"eth0\"\n", "7: sensor.transport.interface = 'eth0': "},
+           {udp + "group = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
+           {udp + "group = \"10.1.2.3\"\ninterface = \"eth0\"\n",
+            "7: sensor.transport.group = '10.1.2.3': expected a multicast address"},
+           {udp + "group = \"239.1.2.3\"\ninterface = \"eth0\"\nbind = \"10.0.0.1\"\n",
+            "9: sensor.transport.bind = '10.0.0.1': "},
+           {udp + "host = \"gyro\"\n", "7: sensor.transport.host = 'gyro': "},
+           {udp + "bind = \"::1\"\nhost = \"10.0.0.1\"\n",
+            "8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, as "
+            "::1"},
+           {tcp, "4: sensor.transport.host: missing; "},
+           {tcp + "host = \"10.0.0.1\"\nbaud = 9600\n", "8: sensor.transport.baud: unknown key; "}})
+    EXPECT_TRUE(complaint(network(transport)).starts_with("f.toml:" + place))
         << complaint(network(transport));
+  for (const std::string host :
+       {"gyro.local", "239.1.2.3", "fe80::1", "ff02::1", "192.168.1", "192.168.1.256", "1.2.3.4:5", "[::1]",
+        "fe80::1%", "fe80::1%an-interface-too-long", "::1 "})
+    EXPECT_TRUE(complaint(network(tcp + "host = \"" + host + "\"\n"))
+                    .starts_with("f.toml:7: sensor.transport.host = '" + host + "': expected a numeric"));
+  for (const std::string host : {"223.255.255.255", "::1", "fe80::1%eth0"})
+    EXPECT_EQ(complaint(network(tcp + "host = \"" + host + "\"\n")), "");
+  EXPECT_EQ(complaint(network(udp + "group = \"ff02::1:2\"\ninterface = \"eth0\"\nhost = \"fe80::1\"\n")),
+            "");
 }
 
 TEST(Config, GathersAllErrors) {
@@ -310,6 +328,38 @@ TEST(Config, ASensorsTextReadsAsTheSensorAlsoWhenReloaded) {
   EXPECT_EQ(reloaded.filter.window, 77);
   EXPECT_EQ(reloaded.range_radps, sensor.range_radps);
   same(parse_config(reloaded.text, file).sensors.at(0), reloaded);
+}
+
+// A log's frames go back onto the interface that they came on: by the first that the driver wants.
+TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
+  const test::OwnFolder folder;
+  const std::string log = folder.path("frames.log");
+  const DriverInstance driver = make_driver(
+      "dbc", {{"dbc", std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/goetting_hg_g_84300.dbc"},
+              {"signal", "Angle"},
+              {"kind", "angle"}});
+  ASSERT_EQ(driver.description().can_ids, 1U);
+  std::array<char, 4> id{};
+  std::snprintf(id.data(), id.size(), "%03X", driver.description().can_id[0].id);
+  std::ofstream(log) << "(1.0) can7 7FF#00\n(1.1) vcan3 " << id.data() << "#0000000000000000\n";
+  SensorConfig sensor;
+  sensor.name = "nose";
+  sensor.driver = "dbc";
+  sensor.transport.kind = TransportConfig::Kind::file;
+  sensor.transport.file.format = FileSettings::Format::candump;
+  sensor.transport.file.path = log;
+  Config config;
+  config.file = "ifogd.toml";
+  const auto interface = [&] { return flight_header(sensor, config, driver, "").interface; };
+  EXPECT_EQ(interface(), "vcan3");
+  sensor.transport.interface = "can1";
+  EXPECT_EQ(interface(), "can1");
+  sensor.transport.kind = TransportConfig::Kind::can;
+  EXPECT_EQ(interface(), "can1");
+  sensor.transport.kind = TransportConfig::Kind::file;
+  sensor.transport.interface.clear();
+  sensor.transport.file.path = log + ".not-there";
+  EXPECT_EQ(interface(), "");
 }
 
 TEST(Config, TheExamplesAreGood) {

@@ -47,31 +47,6 @@ TEST(IncrementQueue, AnOverflowMergesAndLosesNoAngle) {
   EXPECT_TRUE(queue.finished());
 }
 
-TEST(IncrementQueue, AMergeCannotStarveInAFullRing) {
-  IncrementQueue queue(2, IncrementQueue::WhenFull::merge);
-  double angle = 0.0;
-  std::uint64_t pushed = 0;
-  for (int round = 0; round < 1000; ++round) {
-    for (int i = 0; i < 3; ++i) push(queue, ++pushed);
-    if (const Increment* const in = queue.front()) {
-      angle += in->delta_theta_rad[0];
-      queue.pop();
-    }
-  }
-  std::thread closer([&queue] { queue.close(); });
-  while (!queue.finished()) {
-    if (const Increment* const in = queue.front()) {
-      angle += in->delta_theta_rad[0];
-      queue.pop();
-    } else {
-      queue.wait();
-    }
-  }
-  closer.join();
-  EXPECT_EQ(angle, static_cast<double>(pushed) * static_cast<double>(pushed + 1) / 2.0);
-  EXPECT_GT(queue.merged(), 0U);
-}
-
 // The consumer's work is done by two threads in turn, and a third calls the consumer at any moment. What they
 // share is plain: ThreadSanitizer sees whether the place is handed over properly.
 TEST(IncrementQueue, AProducerThatBorrowsTheConsumersPlaceKeepsTheOrder) {

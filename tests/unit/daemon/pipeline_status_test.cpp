@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a running pipeline says of itself.
-#include "daemon/housekeeping/status_report.h"
 #include "tests/unit/daemon/rig.h"
 #include "tests/unit/test.h"
 
@@ -19,10 +18,9 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   rig.transport->allowed_ = kHalf * kFrame;
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
-  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const auto look = [&](std::size_t messages) {
     rig.await_messages(messages);
-    return report.update(*rig.pipeline, rig.snapshot(), 1.0);
+    return rig.status(rig.snapshot());
   };
   const status_t before = look(kHalf);
   EXPECT_EQ(before.gated, kHalf / 250);
@@ -32,7 +30,7 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   EXPECT_EQ(after.filter_resets, 1);
   EXPECT_EQ(after.gated, before.gated);
   EXPECT_GE(after.floor_hits, before.floor_hits);
-  EXPECT_FALSE(test::has(report.moved(), "+-")) << report.moved();
+  EXPECT_FALSE(test::has(rig.report->moved(), "+-")) << rig.report->moved();
   rig.transport->allowed_ = ~std::size_t{0};
   EXPECT_GE(look(kCount).gated, kCount / 250);
   rig.pipeline->stop();
@@ -44,13 +42,12 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
     rig.transport->stays_open_ = true;
     rig.transport->stray_ = rubbish;  // long ago, and not what is wrong now
     rig.pipeline->start();
-    while (rig.pipeline->reader().books().bytes_read < 50 * kFrame) std::this_thread::sleep_for(1ms);
-    StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
+    while (rig.pipeline->reader().books().line.bytes < 50 * kFrame) std::this_thread::sleep_for(1ms);
     std::string fault;
     for (int second = 0; second < 8; ++second) {
       FilterSnapshot snapshot;
       snapshot.reader = rig.pipeline->reader().books();
-      fault = report.update(*rig.pipeline, snapshot, 1.0).fault;
+      fault = rig.status(snapshot).fault;
     }
     EXPECT_EQ(fault, rubbish
                          ? "bytes received and no frame of the sensor in them: check driver, options and baud"
@@ -79,8 +76,7 @@ TEST(PipelineStatus, FramesOfTwoDevicesAreNotTakenAndToldInWords) {
   rig.pipeline->start();
   while (rig.pipeline->reader().books().decoded < 2 * kCount) std::this_thread::sleep_for(1ms);
   const FilterSnapshot snapshot = rig.snapshot();
-  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
-  const status_t status = report.update(*rig.pipeline, snapshot, 1.0);
+  const status_t status = rig.status(snapshot);
   EXPECT_EQ(status.state, status_t::STATE_NO_DATA);
   EXPECT_TRUE(status.fault.starts_with("the sequence runs to and fro")) << status.fault;
   EXPECT_EQ(status.samples_decoded, static_cast<std::int64_t>(2 * kCount));
@@ -102,13 +98,12 @@ TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
   rig.transport->allowed_ = 100 * kFrame;
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
-  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().bytes_read < 100 * kFrame)
+  while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().line.bytes < 100 * kFrame)
     std::this_thread::sleep_for(1ms);
   const FilterSnapshot snapshot = rig.snapshot();
   rig.transport->allowed_ = ~std::size_t{0};
-  while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
-  StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
-  const status_t& status = report.update(*rig.pipeline, snapshot, 1.0);
+  while (rig.pipeline->reader().books().counts.samples < 1000) std::this_thread::sleep_for(1ms);
+  const status_t& status = rig.status(snapshot);
   EXPECT_EQ(status.samples_waiting, 0);
   EXPECT_EQ(status.samples_in, 100);
   EXPECT_EQ(status.samples_published, 100);
@@ -148,8 +143,7 @@ TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
   const FilterSnapshot snapshot = rig.snapshot();
   rig.pipeline->stop();
 
-  StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"}, 1000.0);
-  const status_t& sent = report.update(*rig.pipeline, snapshot, 1.0);
+  const status_t& sent = rig.status(snapshot);
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(sent.getEncodedSize()));
   ASSERT_EQ(sent.encode(bytes.data(), 0, sent.getEncodedSize()), sent.getEncodedSize());
   status_t status{};

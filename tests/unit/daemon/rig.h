@@ -6,6 +6,7 @@
 #include <ifog/decode.h>
 #include <ifog/rate_t.hpp>
 
+#include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/pipeline.h"
 #include "tests/unit/daemon/chain_behind.h"
 #include "tests/unit/daemon/kvh_frames.h"
@@ -122,6 +123,7 @@ struct Rig {
     publisher = keeping.get();
     pipeline = std::make_unique<Pipeline>(plan, std::move(memory), std::move(driver), nullptr,
                                           std::make_unique<ChainParts>(chain), std::move(keeping));
+    report = std::make_unique<StatusReport>("test", chain.channels, chain.axes, chain.facts.nominal_rate_hz);
     pipeline->open();
   }
   void run_to_the_end() {
@@ -146,6 +148,8 @@ struct Rig {
     while (!pipeline->filter().take_snapshot(out)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return out;
   }
+  // Its status message of this second.
+  const status_t& status(const FilterSnapshot& now) { return report->update(*pipeline, now, 1.0); }
   void await_messages(std::size_t count) {
     while (publisher->messages().size() < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -157,6 +161,7 @@ struct Rig {
   MemoryTransport* transport;
   KeepingPublisher* publisher;
   std::unique_ptr<Pipeline> pipeline;
+  std::unique_ptr<StatusReport> report;
 };
 
 inline double sent_angle(int count) {

@@ -95,6 +95,22 @@ class RunningDaemon : public DaemonProcess {
     }
     return false;
   }
+  // Of the sensor "nose": its last status, and whether one comes with so many samples published, or of that state.
+  const status_t& nose() { return listener_->last["IFOG_NOSE_STATUS"]; }
+  bool published(std::int64_t samples) {
+    return await([&] { return nose().samples_published == samples; });
+  }
+  bool comes_to(std::int32_t state) {
+    return await([&] { return nose().state == state; });
+  }
+  // So many status messages more.
+  bool seconds(int count) {
+    const int before = listener_->heard["IFOG_NOSE_STATUS"];
+    return await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= before + count; });
+  }
+  bool says(const std::string& text, int times = 1) {
+    return await([&] { return times_said(text) == times; });
+  }
   void send(const std::string& sensor, int count) {
     const std::vector<std::uint8_t> bytes = kvh_frames(sent_[sensor], count, [](int) { return 0.01; });
     sent_[sensor] += count;

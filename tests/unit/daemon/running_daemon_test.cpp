@@ -16,7 +16,7 @@ TEST_F(RunningDaemon, AReloadTakesEffectForAllSensorsOrForNone) {
   start();
   send("nose", 10);
   send("tail", 10);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 10; })) << said();
+  ASSERT_TRUE(published(10)) << said();
   // The nose's model is good, the tail's is not: before, the nose had its own and the log named no sensor.
   write("good.toml", kModel);
   write("bad.toml",
@@ -24,36 +24,34 @@ TEST_F(RunningDaemon, AReloadTakesEffectForAllSensorsOrForNone) {
   write("ifogd.toml",
         kDaemon + sensor("nose", "model = \"good.toml\"\n") + sensor("tail", "model = \"bad.toml\"\n"));
   kill(child_, SIGHUP);
-  ASSERT_TRUE(await([&] { return times_said("reload refused: nothing has changed for any sensor") == 1; }))
-      << said();
+  ASSERT_TRUE(says("reload refused: nothing has changed for any sensor", 1)) << said();
   EXPECT_EQ(times_said("sensor \"tail\": " + path("bad.toml") + ":6: range[1].high"), 1) << said();
   send("nose", 10);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 20; })) << said();
-  EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].model, "");
-  EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].filter_resets, 0);
+  ASSERT_TRUE(published(20)) << said();
+  EXPECT_EQ(nose().model, "");
+  EXPECT_EQ(nose().filter_resets, 0);
   write("ifogd.toml", kDaemon + sensor("nose") + sensor("tail", "options.rate_hzz = 100\n"));
   kill(child_, SIGHUP);
-  ASSERT_TRUE(await([&] { return times_said("reload refused: nothing has changed for any sensor") == 2; }))
-      << said();
+  ASSERT_TRUE(says("reload refused: nothing has changed for any sensor", 2)) << said();
   // Now both; and what a reload cannot do is said.
   write("bad.toml", kModel);
   write("ifogd.toml", std::string(kDaemon) + "log_level = \"debug\"\n" +
                           sensor("nose", "model = \"good.toml\"\nrange_radps = 5.0\n") + sensor("belly"));
   kill(child_, SIGHUP);
-  ASSERT_TRUE(await([&] { return times_said("nose: reloaded: model " + path("good.toml")) == 1; })) << said();
+  ASSERT_TRUE(says("nose: reloaded: model " + path("good.toml"))) << said();
   EXPECT_EQ(times_said("nose: changed, needs a restart: range_radps"), 1) << said();
   EXPECT_EQ(times_said("changed in [daemon], needs a restart: log_level"), 1) << said();
   EXPECT_EQ(times_said("sensor \"belly\" is new"), 1) << said();
   EXPECT_EQ(times_said("tail: no longer in"), 1) << said();
   send("nose", 10);
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].model.size() == 12; })) << said();
+  EXPECT_TRUE(await([&] { return nose().model.size() == 12; })) << said();
   EXPECT_EQ(end(), 0) << said();
 }
 
 TEST_F(RunningDaemon, AFloodOfReloadsIsOneASecondAndTheStatusGoesOn) {
   write("ifogd.toml", kDaemon + sensor("nose"));
   start();
-  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  ASSERT_TRUE(seconds(1)) << said();
   const int before = listener_->heard["IFOG_NOSE_STATUS"];
   ASSERT_TRUE(await([&] {
     for (int n = 0; n < 5; ++n) {
@@ -73,13 +71,10 @@ TEST_F(RunningDaemon, AFifoThatFallsSilentHasNoData) {
   write("ifogd.toml", kDaemon + sensor("nose"));
   start();
   send("nose", 100);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].state == status_t::STATE_RUNNING; }))
-      << said();
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].state == status_t::STATE_NO_DATA; }))
-      << said();
+  ASSERT_TRUE(comes_to(status_t::STATE_RUNNING)) << said();
+  EXPECT_TRUE(comes_to(status_t::STATE_NO_DATA)) << said();
   send("nose", 100);
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].state == status_t::STATE_RUNNING; }))
-      << said();
+  EXPECT_TRUE(comes_to(status_t::STATE_RUNNING)) << said();
   EXPECT_EQ(end(), 0);
 }
 
@@ -88,11 +83,9 @@ TEST_F(RunningDaemon, ASlowSensorIsNotWithoutData) {
   write("ifogd.toml", kDaemon + sensor("nose", "nominal_rate_hz = 0.1\n"));
   start();
   send("nose", 1);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].state == status_t::STATE_RUNNING; }))
-      << said();
-  const int before = listener_->heard["IFOG_NOSE_STATUS"];
-  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= before + 4; })) << said();
-  EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].state, status_t::STATE_RUNNING);
+  ASSERT_TRUE(comes_to(status_t::STATE_RUNNING)) << said();
+  ASSERT_TRUE(seconds(4)) << said();
+  EXPECT_EQ(nose().state, status_t::STATE_RUNNING);
   EXPECT_EQ(times_said("no data"), 0) << said();
   EXPECT_EQ(end(), 0);
 }
@@ -103,11 +96,10 @@ TEST_F(RunningDaemon, ALogThatNobodyReadsOrThatIsClosedEndsNothing) {
   const int reader = open(path("said").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   write("ifogd.toml", kDaemon + sensor("nose"));
   start();
-  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; }));
+  ASSERT_TRUE(seconds(1));
   close(reader);
   kill(child_, SIGHUP);  // which has something to say
-  const int before = listener_->heard["IFOG_NOSE_STATUS"];
-  EXPECT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= before + 2; }));
+  EXPECT_TRUE(seconds(2));
   EXPECT_EQ(end(), 0);
   // Closed from the start: whatever is opened next must not get its number, and the log.
   write("ifogd.toml", kDaemon + sensor("tail"));
@@ -221,13 +213,13 @@ TEST_F(SecondDaemon, OneFifoIsOneDaemons) {
   write("other.toml", kDaemon + sensor("nose") + sensor("tail"));
   start();
   send("nose", 100);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
+  ASSERT_TRUE(published(100)) << said();
   EXPECT_EQ(run_second("other.toml"), 1);
   EXPECT_EQ(second_said(), "ifogd: " + path("nose") +
                                ": another process reads it: Device or resource busy, expected a device or "
                                "FIFO of this daemon's own\n");
   send("nose", 100);
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 200; })) << said();
+  EXPECT_TRUE(published(200)) << said();
   EXPECT_EQ(end(), 0) << said();
   // With the first one's end, however that came, the FIFO is free.
   start();
@@ -236,7 +228,7 @@ TEST_F(SecondDaemon, OneFifoIsOneDaemons) {
   waitpid(child_, nullptr, 0);
   start();
   send("nose", 100);
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
+  EXPECT_TRUE(published(100)) << said();
   EXPECT_EQ(end(), 0) << said();
 }
 
@@ -245,7 +237,7 @@ TEST_F(SecondDaemon, OneStateFolderIsOneDaemons) {
   write("ifogd.toml", daemon + sensor("nose"));
   write("other.toml", daemon + sensor("tail"));
   start();
-  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  ASSERT_TRUE(seconds(1)) << said();
   EXPECT_EQ(run_second("other.toml"), 1);
   EXPECT_EQ(second_said(), "ifogd: " + path("state/ifogd.lock") + ": another daemon, process " +
                                std::to_string(child_) +
@@ -258,7 +250,7 @@ TEST_F(SecondDaemon, OneStateFolderIsOneDaemons) {
 TEST_F(SecondDaemon, WhoPublishesOnATakenChannelSaysSo) {
   write("ifogd.toml", kDaemon + sensor("nose"));
   start();
-  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  ASSERT_TRUE(seconds(1)) << said();
   EXPECT_EQ(times_said("another daemon publishes"), 0);
   write("capture.csv", "time_s,rate_radps\n0,0.1\n0.01,0.1\n0.02,0.1\n");
   for (const std::string name : {"nose", "tail"}) {
@@ -281,7 +273,7 @@ TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
   // The daemon's own.
   start();
   send("nose", 100);
-  ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].record_file_bytes > 0; })) << said();
+  ASSERT_TRUE(await([&] { return nose().record_file_bytes > 0; })) << said();
   EXPECT_EQ(WEXITSTATUS(std::system(record.c_str())), 1);
   EXPECT_EQ(second_said(), "ifog: " + path("rec/nose") +
                                ": another recorder writes into it (expected a folder of its own)\n");
@@ -292,13 +284,12 @@ TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
   ASSERT_EQ(flock(held, LOCK_EX | LOCK_NB), 0);
   start();
   send("nose", 100);
-  EXPECT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 100; })) << said();
-  EXPECT_TRUE(await([&] {
-    return times_said("recorder: " + path("rec/nose") +
-                      ": another recorder writes into it (expected a folder of its own)") == 1;
-  })) << said();
+  EXPECT_TRUE(published(100)) << said();
+  EXPECT_TRUE(says("recorder: " + path("rec/nose") +
+                   ": another recorder writes into it (expected a folder of its own)"))
+      << said();
   close(held);
-  EXPECT_TRUE(await([&] { return times_said("all is recorded again, nothing is lost") == 1; })) << said();
+  EXPECT_TRUE(says("all is recorded again, nothing is lost")) << said();
   EXPECT_EQ(end(), 0) << said();
 }
 

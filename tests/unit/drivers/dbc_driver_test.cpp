@@ -13,16 +13,7 @@ using ifog::DbcText;
 using ifog::decode;
 using ifog::frame;
 using ifog::kDbcExamples;
-
-ifog::DriverInstance three_axes(const ifog::DriverSettings& more = {}) {
-  ifog::DriverSettings settings{{"dbc", kDbcExamples + "ifogd_gyro.dbc"},
-                                {"x", "Rate_x"},
-                                {"y", "Rate_y"},
-                                {"z", "Rate_Z.Rate_z"},
-                                {"counter", "Counter"}};
-  settings.insert(more.begin(), more.end());
-  return ifog::make_driver("dbc", settings);
-}
+using ifog::three_axes;
 
 TEST(DbcDriver, GoettingFrameByHand) {
   ifog::DriverInstance driver = ifog::make_driver("dbc", {{"dbc", kDbcExamples + "goetting_hg_g_84300.dbc"},
@@ -58,12 +49,7 @@ TEST(DbcDriver, GoettingFrameByHand) {
 TEST(DbcDriver, ALostFrameCostsItsSampleAndMixesNone) {
   for (const bool counted : {true, false})
     for (std::size_t lost = 0; lost < 15; ++lost) {
-      ifog::DriverInstance driver = counted
-                                        ? three_axes()
-                                        : ifog::make_driver("dbc", {{"dbc", kDbcExamples + "ifogd_gyro.dbc"},
-                                                                    {"x", "Rate_x"},
-                                                                    {"y", "Rate_y"},
-                                                                    {"z", "Rate_z"}});
+      ifog::DriverInstance driver = counted ? three_axes() : three_axes({});
       std::vector<ifog_can_frame> frames;
       for (int k = 0; k < 5; ++k)
         for (int axis = 0; axis < 3; ++axis)

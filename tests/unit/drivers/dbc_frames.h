@@ -26,6 +26,14 @@ inline ifog_can_frame axis_frame(std::uint32_t id, float rate, std::uint16_t cou
                     counter >> 8, status, 0});
 }
 
+// A sensor of three axes by that file, with the counter or other settings.
+inline DriverInstance three_axes(const DriverSettings& more = {{"counter", "Counter"}}) {
+  DriverSettings settings{
+      {"dbc", kDbcExamples + "ifogd_gyro.dbc"}, {"x", "Rate_x"}, {"y", "Rate_y"}, {"z", "Rate_Z.Rate_z"}};
+  settings.insert(more.begin(), more.end());
+  return make_driver("dbc", settings);
+}
+
 inline std::vector<ifog_sample> decode(DriverInstance& driver, const std::vector<ifog_can_frame>& frames) {
   std::vector<ifog_sample> samples;
   for (const ifog_can_frame& f : frames)

@@ -21,11 +21,7 @@ class Samples : public testing::Test {
     for (const ifog_can_frame& f : frames)
       driver_.decode_can(f, [&](const ifog_sample& sample) { samples_.push_back(sample); });
   }
-  ifog::DriverInstance driver_ = ifog::make_driver("dbc", {{"dbc", ifog::kDbcExamples + "ifogd_gyro.dbc"},
-                                                           {"x", "Rate_x"},
-                                                           {"y", "Rate_y"},
-                                                           {"z", "Rate_z"},
-                                                           {"counter", "Counter"}});
+  ifog::DriverInstance driver_ = ifog::three_axes();
   std::vector<ifog_sample> samples_;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/clock.h"
-#include "drivers/transport/backlog.h"
 #include "drivers/transport/transport.h"
 #include "tests/unit/test.h"
 

@@ -309,12 +309,7 @@ TEST_F(FileTransport, StopEndsAReadThatWaitsForARecordedTime) {
   settings_.pace = FileSettings::Pace::recorded;
   const auto transport = opened();
   EXPECT_EQ(transport->read(kForever).frames.size(), 1U);
-  std::thread stopper([&] {
-    std::this_thread::sleep_for(20ms);
-    transport->stop();
-  });
-  EXPECT_TRUE(transport->read(kForever).empty());
-  stopper.join();
+  ifog::expect_stop_to_end_a_read(*transport);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/serial/serial.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "drivers/transport/sole_reader.h"
 #include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
@@ -47,7 +47,7 @@ TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
   Gyro gyro;
   const auto transport = make_serial_transport(settings(), gyro.opener());
   const std::string opening = "=rate\r";
-  transport->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  transport->open(bytes_of(opening));
   EXPECT_EQ(gyro.receive(opening.size()), opening);
   gyro.send("0");
   EXPECT_EQ(read_some(*transport, 1), "0");
@@ -105,14 +105,7 @@ TEST(SerialTransport, StopEndsTheWaitForBytesAndTheWaitForTheDevice) {
       gyro.pull();
       while (transport->state() == TransportState::open) transport->read(kForever);
     }
-    std::thread stopper([&] {
-      std::this_thread::sleep_for(20ms);
-      transport->stop();
-    });
-    const std::int64_t begin = monotonic_ns();
-    EXPECT_TRUE(transport->read(kForever).empty());
-    EXPECT_LT(monotonic_ns() - begin, 30'000'000'000) << "half of kForever";
-    stopper.join();
+    expect_stop_to_end_a_read(*transport);
   }
 }
 
@@ -169,8 +162,6 @@ TEST(SerialTransport, ALineIsOneReaders) {
 }
 
 // A gyro that is set up by lines of text, as KVH's manual says that it answers them, over a pseudo terminal.
-
-using namespace std::chrono_literals;
 
 using namespace std::string_literals;
 const std::string kFrame = "\xFE\x81\xFF\x55 frame \r\x01\x02 DR"s;

@@ -105,7 +105,7 @@ TEST_P(Tcp, DeliversEveryByteWithTheKernelsTime) {
   Server gyro(GetParam());
   const auto transport = make_tcp_transport(at(gyro.port()));
   const std::string opening = "ZZR";
-  transport->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  transport->open(bytes_of(opening));
   gyro.accept();
   EXPECT_EQ(gyro.receive(3), opening);
   gyro.send("x");
@@ -133,7 +133,7 @@ TEST_P(Tcp, ConnectsAgainWhenTheOtherEndCloses) {
   Server gyro(GetParam());
   const auto transport = make_tcp_transport(at(gyro.port()));
   const std::string opening = "go";
-  transport->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  transport->open(bytes_of(opening));
   for (unsigned round = 0; round < 5; ++round) {
     gyro.accept();
     EXPECT_EQ(gyro.receive(2), opening);  // each time
@@ -212,13 +212,7 @@ TEST(TcpTransport, NeverTalksToItself) {
   EXPECT_THROW(make_tcp_transport(settings)->open({}), OpenError);
 }
 
-TEST(TcpTransport, SaysWhichSettingIsWrong) {
-  EXPECT_EQ(tcp_complaint({.host = "10.0.0.1", .port = 1}), "");
-  EXPECT_EQ(tcp_complaint({.host = "fe80::1%eth0", .port = 1}), "");
-  EXPECT_EQ(tcp_complaint({.host = "10.0.0.1", .port = 0}), "port = 0: expected 1 ... 65535");
-  for (const char* host : {"", "gyro.local", "239.1.2.3", "fe80::1", "ff02::1"})
-    EXPECT_EQ(tcp_complaint({.host = host, .port = 1}).substr(0, 8), "host = '") << host;
-  EXPECT_THROW(make_tcp_transport({.host = "gyro.local", .port = 1}), std::runtime_error);
+TEST(TcpTransport, AnInterfaceThatIsMissingIsAwaited) {
   const auto elsewhere = make_tcp_transport({.host = "fe80::1%none-such", .port = 1});
   EXPECT_THROW(elsewhere->open({}), OpenError);
   EXPECT_EQ(elsewhere->reason(), ENODEV);

@@ -7,7 +7,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "drivers/transport/serial/serial.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "tests/unit/test.h"
 
 namespace ifog {

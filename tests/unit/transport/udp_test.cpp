@@ -4,7 +4,6 @@
 #include <sys/ioctl.h>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/network/ip_address.h"
 #include "drivers/transport/network/udp.h"
 #include "tests/unit/test.h"
 #include "tests/unit/transport/forever.h"
@@ -16,22 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 
 std::string text_of(const Delivery& d) { return {d.bytes.begin(), d.bytes.end()}; }
-
-TEST(IpAddress, IsReadAsRfc4291WritesIt) {
-  EXPECT_TRUE(IpAddress::parse("192.168.1.20"));
-  EXPECT_FALSE(IpAddress::parse("192.168.1.20")->is_v6());
-  EXPECT_TRUE(IpAddress::parse("::1")->is_v6());
-  EXPECT_TRUE(IpAddress::parse("fe80::1%eth0")->is_link_local_v6());
-  EXPECT_EQ(IpAddress::parse("fe80::1%eth0")->interface(), "eth0");
-  EXPECT_TRUE(IpAddress::parse("239.1.2.3")->is_multicast());
-  EXPECT_TRUE(IpAddress::parse("ff02::1:2")->is_multicast());
-  EXPECT_FALSE(IpAddress::parse("223.255.255.255")->is_multicast());
-  for (const char* none : {"", "gyro.local", "192.168.1", "192.168.1.256", "1.2.3.4:5", "[::1]", "fe80::1%",
-                           "fe80::1%an-interface-too-long", "::1 "})
-    EXPECT_FALSE(IpAddress::parse(none)) << none;
-  EXPECT_EQ(host_and_port("10.0.0.1", 80), "10.0.0.1:80");
-  EXPECT_EQ(host_and_port("::1", 80), "[::1]:80");
-}
 
 class Udp : public BothFamilies {
  protected:
@@ -134,15 +117,12 @@ TEST(UdpTransport, TheOpeningGoesToTheHost) {
   LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
   ASSERT_TRUE(gyro.bind(settings.port, "127.0.0.2"));
   const std::string opening = "ZZR";
-  make_udp_transport(settings)->open({reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+  make_udp_transport(settings)->open(bytes_of(opening));
   char got[16];
   EXPECT_EQ(recv(gyro.fd(), got, sizeof got, 0), 3);
   EXPECT_EQ(std::string(got, 3), opening);
   settings.host = "";
-  EXPECT_TRUE(test::has(test::refusal([&] {
-                          make_udp_transport(settings)->open(
-                              {reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
-                        }),
+  EXPECT_TRUE(test::has(test::refusal([&] { make_udp_transport(settings)->open(bytes_of(opening)); }),
                         "expected host, the sensor's address"));
 }
 
@@ -180,27 +160,6 @@ TEST(UdpTransport, AGroupIsJoinedOnItsInterface) {
   gyro.send_to(settings.port, "not for the group");  // to the port, but not to the group
   gyro.send_to(settings.port, "to all", "239.255.12.34");
   EXPECT_EQ(text_of(transport->read(kForever)), "to all");
-}
-
-TEST(UdpTransport, SaysWhichSettingIsWrong) {
-  const auto complaint = [](std::uint16_t port, const char* bind, const char* group, const char* interface,
-                            const char* host) {
-    return udp_complaint({.port = port, .bind = bind, .group = group, .interface = interface, .host = host});
-  };
-  EXPECT_EQ(complaint(5000, "", "", "", ""), "");
-  EXPECT_EQ(complaint(5000, "", "ff02::1:2", "eth0", "fe80::1"), "");
-  EXPECT_EQ(complaint(0, "", "", "", ""), "port = 0: expected 1 ... 65535");
-  EXPECT_EQ(complaint(5000, "here", "", "", ""),
-            "bind = 'here': expected a numeric address of this computer, \"192.168.1.1\" or \"fd00::1\"");
-  EXPECT_EQ(complaint(5000, "239.1.2.3", "", "", "").substr(0, 18), "bind = '239.1.2.3'");
-  EXPECT_EQ(complaint(5000, "", "10.1.2.3", "eth0", ""),
-            "group = '10.1.2.3': expected a multicast address, \"239.1.2.3\" or \"ff02::1:2\"");
-  EXPECT_EQ(complaint(5000, "", "239.1.2.3", "", "").substr(0, 19), "interface: missing;");
-  EXPECT_EQ(complaint(5000, "10.0.0.1", "239.1.2.3", "eth0", "").substr(0, 17), "bind = '10.0.0.1'");
-  EXPECT_EQ(complaint(5000, "", "", "eth0", "").substr(0, 18), "interface = 'eth0'");
-  EXPECT_EQ(complaint(5000, "", "", "", "gyro").substr(0, 13), "host = 'gyro'");
-  EXPECT_EQ(complaint(5000, "10.0.0.1", "", "", "::1"),
-            "host = '::1': expected an address of the same kind, IPv4 or IPv6, as 10.0.0.1");
 }
 
 }  // namespace

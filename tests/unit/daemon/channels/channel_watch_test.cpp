@@ -16,10 +16,9 @@ struct Second {
 
 class Watched {
  public:
-  Watched() : table(2), watch_(sensor()) {
+  Watched() : table(2), watch_(sensor(), {"temperature_degC", "coil_degC", "hull_degC"}) {
     status_.state = status_t::STATE_RUNNING;
     status_.samples_in = 1;
-    status_.channel_name = {"temperature_degC", "coil_degC", "hull_degC"};
   }
   // What is said in one second.
   std::string look(const Second& now) {
@@ -115,7 +114,7 @@ TEST(ChannelWatch, WhatIsNotThereAtTheStartIsToldOnce) {
   can.source = ChannelConfig::Source::can;
   can.interface = "no-bus";
   sensor.channels = {file, can};
-  ChannelWatch watch(sensor);
+  ChannelWatch watch(sensor, {"coil_degC", "hull_degC"});
   EXPECT_EQ(
       watch.absent(),
       (std::vector<std::string>{
@@ -128,7 +127,6 @@ TEST(ChannelWatch, WhatIsNotThereAtTheStartIsToldOnce) {
   status_t status{};
   status.state = status_t::STATE_RUNNING;
   status.samples_in = 1;
-  status.channel_name = {"coil_degC", "hull_degC"};
   status.channel_age_s = {kNever, kNever};
   for (int second = 0; second < 30; ++second) EXPECT_TRUE(watch.look(status, table).empty());
   table.set(0, 20.0, 1);

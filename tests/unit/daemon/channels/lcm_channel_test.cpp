@@ -4,6 +4,7 @@
 #include <lcm/lcm.h>
 
 #include "daemon/channels/channel_sources.h"
+#include "daemon/channels/channel_watch.h"
 #include "daemon/channels/lcm_field.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"

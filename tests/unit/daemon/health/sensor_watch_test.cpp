@@ -3,6 +3,8 @@
 // put into the samples.
 #include <regex>
 
+#include <ifog/status_t.hpp>
+
 #include "daemon/health/sensor_watch.h"
 #include "daemon/health/sequential_tests.h"
 #include "daemon/health/step_test.h"
@@ -61,7 +63,7 @@ TEST(SensorWatch, NoticesDoubledNoiseAndThatItIsOver) {
   made.run(3.0 * kHour);
   made.sigma *= std::sqrt(2.0);
   made.run(10.0 * kMinute);
-  EXPECT_EQ(made.watch.noticed(), kNoticedNoise) << made.watch.words();
+  EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_NOISE) << made.watch.words();
   EXPECT_GE(made.found_s, 0.0);
   EXPECT_LT(made.found_s, 2.0 * kMinute);
   EXPECT_TRUE(std::regex_search(made.watch.words(), std::regex("1\\.[345] times"))) << made.watch.words();
@@ -75,8 +77,8 @@ TEST(SensorWatch, NoticesNeighboursThatComeToAgree) {
   made.run(3.0 * kHour);
   made.colour = 0.8;
   made.run(10.0 * kMinute);
-  EXPECT_NE(made.watch.noticed() & kNoticedColour, 0) << made.watch.words();
-  EXPECT_EQ(made.watch.noticed() & kNoticedNoise, 0);
+  EXPECT_NE(made.watch.noticed() & status_t::NOTICED_COLOUR, 0) << made.watch.words();
+  EXPECT_EQ(made.watch.noticed() & status_t::NOTICED_NOISE, 0);
 }
 
 TEST(SensorWatch, NoticesAStepOfTheBiasWithItsSize) {
@@ -86,7 +88,7 @@ TEST(SensorWatch, NoticesAStepOfTheBiasWithItsSize) {
     // Of ten-second means three standard deviations; of a single sample 0.3.
     made.rate += sign * 0.3 * kSigma;
     made.run(10.0 * kMinute);
-    EXPECT_EQ(made.watch.noticed(), kNoticedBias) << made.watch.words();
+    EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_BIAS) << made.watch.words();
     EXPECT_NEAR(made.watch.step_radps(), sign * 0.3 * kSigma, 0.1 * kSigma);
     made.run(2.0 * kHour);
     EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
@@ -102,7 +104,7 @@ TEST(SensorWatch, AHugeStepHidesNotTheNext) {
   EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
   made.rate += 0.5 * kSigma;
   made.run(10.0 * kMinute);
-  EXPECT_EQ(made.watch.noticed(), kNoticedBias);
+  EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_BIAS);
 }
 
 TEST(SensorWatch, ATurnIsNoStepAndTheNextStepIsFound) {
@@ -118,7 +120,7 @@ TEST(SensorWatch, ATurnIsNoStepAndTheNextStepIsFound) {
   EXPECT_EQ(made.watch.noticed(), 0) << made.watch.words();
   made.rate += 0.2 * kSigma;
   made.run(10.0 * kMinute);
-  EXPECT_EQ(made.watch.noticed(), kNoticedBias);
+  EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_BIAS);
 }
 
 TEST(SensorWatch, AStepThatEndsTheRestForAMomentIsAStep) {
@@ -129,7 +131,7 @@ TEST(SensorWatch, AStepThatEndsTheRestForAMomentIsAStep) {
   made.run(1.0);
   made.at_rest = true;
   made.run(5.0 * kMinute);
-  EXPECT_EQ(made.watch.noticed(), kNoticedBias) << made.watch.words();
+  EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_BIAS) << made.watch.words();
 }
 
 TEST(SensorWatch, NoticesAChannelOutsideTheRangeForLong) {
@@ -141,7 +143,7 @@ TEST(SensorWatch, NoticesAChannelOutsideTheRangeForLong) {
   EXPECT_EQ(made.watch.noticed(), 0);
   made.out_of_range = true;
   made.run(20.0 * kMinute);
-  EXPECT_EQ(made.watch.noticed(), kNoticedRange);
+  EXPECT_EQ(made.watch.noticed(), status_t::NOTICED_RANGE);
   EXPECT_TRUE(test::has(made.watch.words(), "range of the model"));
   made.watch.renew();
   EXPECT_EQ(made.watch.noticed(), 0);
@@ -206,18 +208,21 @@ TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
   const double threshold = std::log(1000.0);
   const double follows = mean_time_to_alarm(200, [&](unsigned seed) {
     test::Noise normal(seed);
-    ColourCusum test(threshold);
-    double n = 0.0;
-    while (!test.alarmed()) test.take(normal()), n += 1.0;
+    Cusum test(threshold);
+    double n = 0.0, last = normal();
+    for (; !test.alarmed(); n += 1.0) {
+      const double value = normal();
+      test.add(colour_log_ratio(std::exchange(last, value), value));
+    }
     return n;
   });
   EXPECT_GT(follows, 1000.0);
   const double usual = mean_time_to_alarm(200, [&](unsigned seed) {
     std::mt19937_64 random(seed);
     std::bernoulli_distribution odd(0.01);
-    UsualCusum test(threshold);
+    Cusum test(threshold);
     double n = 0.0;
-    while (!test.alarmed()) test.take(odd(random)), n += 1.0;
+    for (; !test.alarmed(); n += 1.0) test.add(usual_log_ratio(odd(random)));
     return n;
   });
   EXPECT_GT(usual, 1000.0);
@@ -271,7 +276,7 @@ TEST(SensorWatch, OfABiasThatWandersNothingIsNoticedButMostStepsAre) {
     each.run(kMinute);
     each.rest += (trial % 2 == 0 ? 3.0 : -3.0) * Wandering::instability();
     each.run(10.0 * kMinute);
-    found += (each.made.watch.noticed() & kNoticedBias) != 0 ? 1 : 0;
+    found += (each.made.watch.noticed() & status_t::NOTICED_BIAS) != 0 ? 1 : 0;
   }
   EXPECT_GT(found, 140);
 }

@@ -2,9 +2,9 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "daemon/health/counted_rate.h"
+#include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/processor_share.h"
-#include "daemon/realtime/thread_watch.h"
+#include "daemon/realtime/realtime.h"
 #include "tests/unit/test.h"
 
 namespace ifog {
@@ -92,30 +92,7 @@ TEST(ProcessorShare, NobodyStandsBackWhileThreeQuartersAreNotTaken) {
   EXPECT_NEAR(parts[1], 0.3, 1e-3);
 }
 
-// Which threads are starved and which are stuck: by lines as proc(5) has them, and by the scheduler itself.
-
-// Of a real thread; fields 14 and 15 are 21 and 34.
-constexpr const char* kLine =
-    "4242 (if og) R) S 1 4242 4242 0 -1 4194368 120 0 1 0 21 34 0 0 -51 0 3 0 512 1000000 200 "
-    "18446744073709551615 1 1 0 0 0 0 0 4096 0 0 0 0 -1 1 50 1 0 0 0\n";
-
-TEST(ThreadWatch, ReadsStateAndTimeBehindAnyName) {
-  const ThreadTime time = parse_thread_stat(kLine);
-  EXPECT_EQ(time.state, 'S');
-  EXPECT_EQ(time.ticks, 55U);
-  EXPECT_EQ(parse_thread_stat("").state, '?');
-  EXPECT_EQ(parse_thread_stat("4242 (nose) R 1 2").state, '?');
-}
-
-TEST(ThreadWatch, StarvedIsReadyBothTimesWithoutAProcessorBetween) {
-  EXPECT_TRUE(starved_between({'R', 7}, {'R', 7}));
-  EXPECT_FALSE(starved_between({'R', 7}, {'R', 8}));  // works without an end
-  EXPECT_FALSE(starved_between({'S', 7}, {'S', 7}));  // waits, for ever perhaps
-  EXPECT_FALSE(starved_between({'D', 7}, {'D', 7}));
-  EXPECT_FALSE(starved_between({'T', 7}, {'T', 7}));
-  EXPECT_FALSE(starved_between({'S', 7}, {'R', 7}));
-  EXPECT_FALSE(starved_between({'?', 0}, {'?', 0}));
-}
+// Which threads are starved, by the scheduler itself.
 
 bool on_processor(int cpu, int priority) {
   cpu_set_t set;
@@ -147,6 +124,7 @@ TEST(ThreadWatch, AThreadBehindOneOfAHigherPriorityIsStarvedUntilThatEnds) {
   std::atomic<bool> go{false}, came{false};
   std::thread watched([&] {
     watch.begin();
+    pthread_setname_np(pthread_self(), "if og) S");  // as a field of proc(5)
     state = on_processor(processors[1], 1) ? waits : refused;
     state.notify_all();
     go.wait(false);

@@ -68,6 +68,18 @@ class RecordedFlight : public RunningDaemon {
     }
     return out;
   }
+  // The denoised rows of every sample are what was published, column by column: raw, compensated, denoised, variance.
+  void expect_as_published(const std::string& name) {
+    const auto rows = rows_of(name);
+    ASSERT_EQ(rows.size(), published().size());
+    for (std::size_t n = 0; n < rows.size(); ++n)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(rows[n][1 + 4 * axis], published()[n].raw[axis]) << n;
+        ASSERT_EQ(rows[n][2 + 4 * axis], published()[n].compensated[axis]) << n;
+        ASSERT_EQ(rows[n][3 + 4 * axis], published()[n].denoised[axis]) << n;
+        ASSERT_EQ(rows[n][4 + 4 * axis], published()[n].variance[axis]) << n;
+      }
+  }
   void configure() {
     write("supply", "11500\n");
     write("model.toml",

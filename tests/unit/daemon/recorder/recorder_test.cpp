@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flight recorder in the daemon: what the reader thread puts on the tape, and what the recorder makes of
 // it.
+#include <sys/resource.h>
+
 #include "daemon/recorder/recorder.h"
-#include "daemon/sensor/flight_header.h"
 #include "drivers/flight/decode.h"
-#include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
-#include "tests/unit/daemon/delivered.h"
 #include "tests/unit/daemon/rig.h"
 #include "tests/unit/flight/recordings.h"
 #include "tests/unit/test.h"
@@ -15,6 +14,14 @@ namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
+
+// As a transport brings it.
+Delivery delivery(const std::vector<std::uint8_t>& bytes, std::int64_t arrival_ns) {
+  Delivery out;
+  out.bytes = bytes;
+  out.arrival_ns = arrival_ns;
+  return out;
+}
 
 FlightHeader header() {
   FlightHeader out;
@@ -25,19 +32,37 @@ FlightHeader header() {
   return out;
 }
 
+const std::vector<std::uint8_t> kBytes{1, 2, 3};
+
+struct Recording {
+  explicit Recording(const std::string& name = "rec", std::size_t tape_bytes = Tape::kLeastBytes)
+      : recorder(name, tape_bytes, std::make_unique<MemoryFolder>(disk), {}, header()) {}
+  // One delivery in a file that is open since.
+  void begin() {
+    recorder.tape().put(delivery(kBytes, 1), 1, {}, 0);
+    recorder.turn(1 * kSecond, kWall);
+    recorder.turn(3 * kSecond, kWall);
+  }
+  void seconds(int from, int to) {
+    for (int second = from; second < to; ++second) recorder.turn(second * kSecond, kWall);
+  }
+  MemoryDisk disk;
+  Recorder recorder;
+};
+
 // The disk stands still while a sensor sends: what it has no room for is lost, counted and reported once; the
 // samples all go their way; and with room all is recorded again.
 TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
-  MemoryDisk disk;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  Recording recording;
+  auto& [disk, recorder] = recording;
   Rig rig(frames(30'000), 360, true, 1024, 0us, true, &recorder.tape());
   rig.transport->allowed_ = 0;
   rig.pipeline->start();
   const auto give = [&](std::size_t upto) {
     rig.transport->allowed_ = upto * kFrame;
-    const auto turns = [&] { return rig.pipeline->reader().counters().turns.value(); };
+    const auto turns = [&] { return rig.pipeline->reader().books().turns; };
     std::uint64_t before = turns();
-    while (rig.pipeline->reader().books().bytes_read < upto * kFrame) {
+    while (rig.pipeline->reader().books().line.bytes < upto * kFrame) {
       std::this_thread::sleep_for(1ms);
       before = turns();
     }
@@ -99,19 +124,6 @@ TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   EXPECT_EQ(read.counts.lost_bytes, lost);
 }
 
-const std::vector<std::uint8_t> kBytes{1, 2, 3};
-
-// One delivery in a file that is open since.
-struct Recording {
-  MemoryDisk disk;
-  Recorder recorder{"rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header()};
-  Recording() {
-    recorder.tape().put(delivery(kBytes, 1), 1, {}, 0);
-    recorder.turn(1 * kSecond, kWall);
-    recorder.turn(3 * kSecond, kWall);
-  }
-};
-
 // How often the thread of this process by that name went to sleep, by the kernel; 0: there is none.
 std::uint64_t sleeps_of(const std::string& name) {
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -125,8 +137,8 @@ std::uint64_t sleeps_of(const std::string& name) {
 
 // However many deliveries there are: every time it wakes it may stand in a reader's way.
 TEST(Recorder, LooksFourTimesASecondAndIsWokenByNobody) {
-  MemoryDisk disk;
-  Recorder recorder("rec:asleep", 4U << 20U, std::make_unique<MemoryFolder>(disk), {}, header());
+  Recording recording("rec:asleep", 4U << 20U);
+  Recorder& recorder = recording.recorder;
   recorder.start();
   while (sleeps_of("rec:asleep") == 0) std::this_thread::sleep_for(1ms);
   const std::int64_t began_ns = monotonic_ns();
@@ -138,14 +150,15 @@ TEST(Recorder, LooksFourTimesASecondAndIsWokenByNobody) {
   const double seconds = 1e-9 * static_cast<double>(monotonic_ns() - began_ns);
   EXPECT_LE(static_cast<double>(sleeps_of("rec:asleep") - before), 4.0 * seconds + 4.0);
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 0U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 0U);
 }
 
 // New settings begin a file with the very delivery that they take effect at, also where that is within a turn
 // of the recorder.
 TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
   Recording recording;
-  Recorder& recorder = recording.recorder;
+  auto& [disk, recorder] = recording;
+  recording.begin();
   FlightHeader other = header();
   other.configuration = "another model";
   recorder.set_header(other, 1);
@@ -155,7 +168,7 @@ TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
   recorder.tape().put(delivery(next, 3), 3, {}, 0);
   recorder.turn(4 * kSecond, kWall);
   recorder.turn(6 * kSecond, kWall);
-  const ReadBack read = read_back(all_of(recording.disk));
+  const ReadBack read = read_back(all_of(disk));
   ASSERT_EQ(read.headers.size(), 2U);
   EXPECT_EQ(read.headers[0].configuration, "");
   EXPECT_EQ(read.headers[1].configuration, "another model");
@@ -164,23 +177,23 @@ TEST(Recorder, NewSettingsBeginAFileAtTheirFirstDelivery) {
   EXPECT_EQ(read.headers[1].began, read.headers[0].number);
   EXPECT_EQ(read.payloads, (std::vector<std::vector<std::uint8_t>>{kBytes, last, next}));
   EXPECT_TRUE(read.holes.empty());
-  const ReadBack second = read_back(recording.disk.files.rbegin()->second);
+  const ReadBack second = read_back(disk.files.rbegin()->second);
   EXPECT_EQ(second.payloads, std::vector<std::vector<std::uint8_t>>{next});
 }
 
 // A disk that refuses holds new settings up, and what was read before them is not taken for theirs.
 TEST(Recorder, NewSettingsWaitForWhatIsBeforeThem) {
-  MemoryDisk disk;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  Recording recording;
+  auto& [disk, recorder] = recording;
   disk.refuses = EIO;
   const std::vector<std::uint8_t> before{1}, after{2};
   recorder.tape().put(delivery(before, 1), 1, {}, 0);
   recorder.set_header(header(), 1);
   recorder.tape().note_settings(1);
   recorder.tape().put(delivery(after, 2), 2, {}, 0);
-  for (int second = 1; second < 5; ++second) recorder.turn(second * kSecond, kWall);
+  recording.seconds(1, 5);
   disk.refuses = 0;
-  for (int second = 5; second < 10; ++second) recorder.turn(second * kSecond, kWall);
+  recording.seconds(5, 10);
   ASSERT_EQ(disk.files.size(), 2U);
   EXPECT_EQ(read_back(disk.files.begin()->second).payloads, std::vector<std::vector<std::uint8_t>>{before});
   EXPECT_EQ(read_back(disk.files.rbegin()->second).payloads, std::vector<std::vector<std::uint8_t>>{after});
@@ -189,8 +202,9 @@ TEST(Recorder, NewSettingsWaitForWhatIsBeforeThem) {
 // Nobody took anything away: the last word is of the disk, and of what waited for it.
 TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   Recording recording;
-  Recorder& recorder = recording.recorder;
-  recording.disk.room = recording.disk.used() + 40;  // for the end of the file, not for what waits
+  auto& [disk, recorder] = recording;
+  recording.begin();
+  disk.room = disk.used() + 40;  // for the end of the file, not for what waits
   recorder.start();
   for (int n = 2; n < 12; ++n) recorder.tape().put(delivery(kBytes, n), n, {}, 0);
   recorder.stop();
@@ -198,15 +212,16 @@ TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   EXPECT_EQ(recorder.take_message(good),
             "recorder: memory: No space left on device to the end, the last 10 deliveries are not recorded");
   EXPECT_FALSE(good);
-  EXPECT_EQ(recorder.lost_deliveries(), 10U);
-  EXPECT_EQ(recorder.lost_bytes(), 30U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 10U);
+  EXPECT_EQ(recorder.counts().lost.bytes, 30U);
 }
 
 // New settings that no room was left for are no entry of the record.
 TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
   Recording recording;
-  Recorder& recorder = recording.recorder;
-  recording.disk.refuses = EIO;
+  auto& [disk, recorder] = recording;
+  recording.begin();
+  disk.refuses = EIO;
   recorder.start();
   for (std::uint32_t n = 0; n < 3; ++n) {
     recorder.tape().put(delivery(kBytes, 2), 2, {}, 0);
@@ -214,41 +229,40 @@ TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
     recorder.tape().note_settings(n + 1);
   }
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 3U);
-  EXPECT_EQ(recorder.entries_unwritten(), 3U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 3U);
+  EXPECT_EQ(recorder.counts().entries_unwritten, 3U);
 }
 
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
-  MemoryDisk disk;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
-  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  Recording recording;
+  auto& [disk, recorder] = recording;
   for (int second = 1; second < 20; ++second) {
     if (second == 10) disk.files.clear();
-    recorder.tape().put(delivery(bytes, second), second, {}, 0);
+    recorder.tape().put(delivery(kBytes, second), second, {}, 0);
     recorder.turn(second * kSecond, kWall);
   }
   bool good = false;
   const std::string message = recorder.take_message(good);
   EXPECT_TRUE(test::has(message, "the recording in work has been removed"));
-  EXPECT_GE(recorder.lost_deliveries(), 7U);
-  EXPECT_EQ(recorder.lost_bytes(), 3 * recorder.lost_deliveries());
+  EXPECT_GE(recorder.counts().lost.deliveries, 7U);
+  EXPECT_EQ(recorder.counts().lost.bytes, 3 * recorder.counts().lost.deliveries);
 }
 
 // A source that keeps its bytes until they are read loses none to a recorder that is slower than the decoding
 // of a file; one that nobody attends holds nothing up.
 TEST(Recorder, AFileAtFreePaceIsRecordedWhole) {
-  MemoryDisk disk;
+  Recording recording;
+  auto& [disk, recorder] = recording;
   const std::vector<std::uint8_t> sent = frames(60'000);  // eight times the tape
   ASSERT_GT(sent.size(), 8 * Tape::kLeastBytes);
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
   recorder.start();
   Rig rig(sent, 3600, true, 1024, 0us, true, &recorder.tape());
   rig.run_to_the_end();
   recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 0U);
-  EXPECT_EQ(recorder.entries_unwritten(), 0U);
+  EXPECT_EQ(recorder.counts().lost.deliveries, 0U);
+  EXPECT_EQ(recorder.counts().entries_unwritten, 0U);
   EXPECT_EQ(recorder.tape().counters().bytes.value(), sent.size());
-  EXPECT_EQ(recorder.file_bytes(), disk.used());
+  EXPECT_EQ(recorder.counts().file_bytes, disk.used());
   const ReadBack read = read_back(all_of(disk));
   EXPECT_TRUE(losses(read.counts).empty());
   std::vector<std::uint8_t> recorded;
@@ -260,38 +274,117 @@ TEST(Recorder, AFileAtFreePaceIsRecordedWhole) {
   EXPECT_GT(alone.counters().lost_deliveries.value(), 0U);
 }
 
-// What the daemon writes in front of a recording.
+// What the reader thread puts on the tape, and what comes off it.
 
-// A log's frames go back onto the interface that they came on: by the first that the driver wants.
-TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
-  const test::OwnFolder folder;
-  const std::string log = folder.path("frames.log");
-  const DriverInstance driver = make_driver(
-      "dbc", {{"dbc", std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/goetting_hg_g_84300.dbc"},
-              {"signal", "Angle"},
-              {"kind", "angle"}});
-  ASSERT_EQ(driver.description().can_ids, 1U);
-  std::array<char, 4> id{};
-  std::snprintf(id.data(), id.size(), "%03X", driver.description().can_id[0].id);
-  std::ofstream(log) << "(1.0) can7 7FF#00\n(1.1) vcan3 " << id.data() << "#0000000000000000\n";
-  SensorConfig sensor;
-  sensor.name = "nose";
-  sensor.driver = "dbc";
-  sensor.transport.kind = TransportConfig::Kind::file;
-  sensor.transport.file.format = FileSettings::Format::candump;
-  sensor.transport.file.path = log;
-  Config config;
-  config.file = "ifogd.toml";
-  const auto interface = [&] { return flight_header(sensor, config, driver, "").interface; };
-  EXPECT_EQ(interface(), "vcan3");
-  sensor.transport.interface = "can1";
-  EXPECT_EQ(interface(), "can1");
-  sensor.transport.kind = TransportConfig::Kind::can;
-  EXPECT_EQ(interface(), "can1");
-  sensor.transport.kind = TransportConfig::Kind::file;
-  sensor.transport.interface.clear();
-  sensor.transport.file.path = log + ".not-there";
-  EXPECT_EQ(interface(), "");
+struct Taken {
+  std::vector<FlightEntryHead> heads;
+  std::vector<FlightKind> kinds;
+  std::vector<std::vector<std::uint8_t>> payloads;
+};
+
+Taken taken_from(Tape& tape) {
+  Taken out;
+  FlightEntryHead head;
+  std::vector<std::uint8_t> payload;
+  while (tape.take(head, payload)) {
+    out.heads.push_back(head);
+    out.kinds.push_back(head.kind);
+    out.payloads.push_back(payload);
+  }
+  return out;
+}
+
+TEST(Tape, ChannelsAndTheWallClockAreRecordedWhenTheyChange) {
+  Tape tape(Tape::kLeastBytes);
+  std::vector<ChannelValue> channels(2);
+  tape.put(delivery(kBytes, 10), 11, channels, 0);
+  channels[1] = {12.5, 9};
+  tape.put(delivery(kBytes, 20), 21, channels, 0);
+  tape.put(delivery(kBytes, 30), 31, channels, 5);
+  tape.put(delivery(kBytes, 40), 41, channels, 5);
+  channels[1].value = 13.0;  // set between the reading of its time and of its value
+  tape.put(delivery(kBytes, 0), 51, channels, 5);
+  const Taken taken = taken_from(tape);
+  using K = FlightKind;
+  EXPECT_EQ(taken.kinds, (std::vector<K>{K::bytes, K::channel, K::bytes, K::wall, K::bytes, K::bytes,
+                                         K::channel, K::bytes}));
+  EXPECT_EQ(taken.heads[1].time_ns, 9);
+  EXPECT_EQ(taken.heads[1].index, 1);
+  EXPECT_EQ(taken.heads[5].flags, 0);
+  EXPECT_EQ(taken.heads[7].flags, kFlightReadTime);  // when it arrived is not known
+  EXPECT_EQ(taken.heads[7].time_ns, 51);
+}
+
+TEST(Tape, WhatFindsNoRoomIsLeftOutCountedAndTold) {
+  Tape tape(Tape::kLeastBytes);
+  const std::vector<std::uint8_t> bytes(1000, 7);
+  std::vector<ChannelValue> channels(1);
+  Delivery opened = delivery(bytes, 1);
+  for (int n = 0; n < 300; ++n) {
+    opened.restarted = n == 280;  // among those that find no room
+    tape.put(opened, n + 1, channels, 0);
+  }
+  const std::uint64_t lost = tape.counters().lost_deliveries.value();
+  EXPECT_GT(lost, 20U);
+  EXPECT_EQ(tape.counters().deliveries.value(), 300U);
+  EXPECT_EQ(tape.counters().lost_bytes.value(), lost * 1000);
+  EXPECT_EQ(taken_from(tape).heads.size(), 300 - lost);
+  // With room again: first what is missing, then the channel that changed meanwhile, then the data.
+  channels[0] = {3.0, 2};
+  opened.restarted = false;
+  tape.put(opened, 400, channels, 0);
+  const Taken taken = taken_from(tape);
+  ASSERT_EQ(taken.heads.size(), 3U);
+  EXPECT_EQ(taken.heads[0].kind, FlightKind::lost);
+  std::uint64_t told[2];
+  ASSERT_EQ(taken.payloads[0].size(), sizeof told);
+  std::memcpy(told, taken.payloads[0].data(), sizeof told);
+  EXPECT_EQ(told[0], lost);
+  EXPECT_EQ(told[1], lost * 1000);
+  EXPECT_EQ(taken.heads[1].kind, FlightKind::channel);
+  EXPECT_NE(taken.heads[2].flags & kFlightReopened, 0);
+}
+
+// Where memory is not locked, too: on the first round of the tape the reader waits for no page of it.
+TEST(Tape, EveryPageIsThereBeforeTheReaderNeedsIt) {
+  Tape tape(4U << 20U);
+  const std::vector<std::uint8_t> bytes(4000);
+  const auto faults = [] {
+    rusage used{};
+    getrusage(RUSAGE_THREAD, &used);
+    return used.ru_minflt;
+  };
+  tape.put(delivery(bytes, 1), 1, {}, 0);
+  const long before = faults();
+  for (int n = 2; n < 1000; ++n) tape.put(delivery(bytes, n), n, {}, 0);
+  EXPECT_LE(faults() - before, 2);
+  EXPECT_EQ(tape.counters().lost_deliveries.value(), 0U);
+}
+
+TEST(Tape, EachCanFrameHasItsTime) {
+  Tape tape(Tape::kLeastBytes);
+  std::vector<ifog_can_frame> frames(3);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].id = static_cast<std::uint32_t>(0x100 + i);
+    frames[i].length = static_cast<std::uint8_t>(i * 4);
+    frames[i].data[0] = static_cast<std::uint8_t>(i);
+    frames[i].arrival_ns = i == 2 ? 0 : static_cast<std::int64_t>(i + 50);
+  }
+  Delivery from_bus;
+  from_bus.frames = frames;
+  from_bus.restarted = true;
+  tape.put(from_bus, 99, {}, 0);
+  const Taken taken = taken_from(tape);
+  ASSERT_EQ(taken.heads.size(), 3U);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ifog_can_frame back{};
+    ASSERT_TRUE(frame_of({taken.heads[i], taken.payloads[i]}, back));
+    EXPECT_EQ(back.id, frames[i].id);
+    EXPECT_EQ(back.length, frames[i].length);
+    EXPECT_EQ(back.arrival_ns, frames[i].arrival_ns);
+    EXPECT_EQ(taken.heads[i].time_ns, i == 2 ? 99 : static_cast<std::int64_t>(i + 50));
+    EXPECT_EQ((taken.heads[i].flags & kFlightReopened) != 0, i == 0);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/health/event.h"
+#include "daemon/pipeline/event.h"
 
 #include <spdlog/fmt/fmt.h>
 

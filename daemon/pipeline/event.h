@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <string>
 
 #include "drivers/ifog/driver.h"
+#include "drivers/transport/counter.h"
 
 namespace ifog {
 
@@ -36,5 +38,19 @@ struct Event {
 
 // Text of one line, without the sensor's name.
 std::string describe(const Event& event);
+
+// From one thread of a pipeline to housekeeping.
+class EventQueue {
+ public:
+  void report(const Event& event) noexcept {
+    if (!ring_.push(event)) lost_.add(1);
+  }
+  bool take(Event& out) noexcept { return ring_.pop(out); }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.value(); }
+
+ private:
+  boost::lockfree::spsc_queue<Event, boost::lockfree::capacity<256>> ring_;
+  Counter lost_;
+};
 
 }  // namespace ifog

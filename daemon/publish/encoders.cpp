@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/publish/inertial_encoder.h"
+#include "daemon/publish/encoders.h"
 
 #include <algorithm>
 #include <bot_core/ins_t.hpp>
@@ -11,10 +11,37 @@
 #include <limits>
 #include <microstrain/ins_t.hpp>
 
-#include "daemon/publish/message_flags.h"
-
 namespace ifog {
 namespace {
+
+constexpr std::size_t kLongestIdentity = 64;
+
+// Flags of rate_t and imu_t from the chain's flags.
+std::int32_t message_flags(const Increment& in, const ChainOutput& out) noexcept {
+  std::int32_t flags = 0;
+  const auto pass = [&flags](std::uint32_t set, std::uint32_t bit, std::int32_t flag) {
+    if ((set & bit) != 0) flags |= flag;
+  };
+  pass(in.flags, kGapBefore, rate_t::FLAG_GAP);
+  pass(in.flags, kMerged, rate_t::FLAG_MERGED);
+  pass(in.flags, kInvalid, rate_t::FLAG_INVALID);
+  pass(in.flags, kClockStep, rate_t::FLAG_CLOCK_STEP);
+  pass(in.flags, kSensorClockSet, rate_t::FLAG_SENSOR_CLOCK_SET);
+  pass(in.flags, kBeyondStated, rate_t::FLAG_BEYOND_STATED);
+  pass(in.flags, kAtFullScale, rate_t::FLAG_SATURATED);
+  pass(out.compensator_flags, kStaleChannel | kNoChannelYet, rate_t::FLAG_STALE_CHANNEL);
+  pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);
+  pass(out.compensator_flags, kRampUnknown, rate_t::FLAG_RAMP_UNKNOWN);
+  pass(out.flags, kNoiseUnknown, rate_t::FLAG_NOISE_UNKNOWN);
+  pass(out.flags, kFilterReset, rate_t::FLAG_FILTER_RESET);
+  pass(out.flags, kNotCompensated, rate_t::FLAG_NOT_COMPENSATED);
+  pass(out.estimate.flags, kGated, rate_t::FLAG_GATED);
+  pass(out.estimate.flags, kManoeuvre, rate_t::FLAG_MANOEUVRE);
+  pass(out.estimate.flags, kRestarted, rate_t::FLAG_FILTER_RESET);
+  pass(out.estimate.flags, kStuck, rate_t::FLAG_STUCK);
+  pass(out.estimate.flags, kAtRest, rate_t::FLAG_AT_REST);
+  return flags;
+}
 
 template <typename Message>
 class Buffer {
@@ -170,6 +197,51 @@ class KvhBatchEncoder final : public InertialEncoder {
 };
 
 }  // namespace
+
+RateEncoder::RateEncoder(int axes) : message_() {
+  const auto n = static_cast<std::size_t>(axes);
+  message_.axes = static_cast<std::int8_t>(axes);
+  for (auto* field : {&message_.raw, &message_.compensated, &message_.denoised, &message_.variance,
+                      &message_.delta_theta, &message_.covered, &message_.angle, &message_.innovation,
+                      &message_.innovation_variance, &message_.gain})
+    field->resize(n);
+  message_.model.reserve(kLongestIdentity);
+  buffer_.resize(static_cast<std::size_t>(message_.getEncodedSize()) + kLongestIdentity);
+}
+
+void RateEncoder::use(const ChainParts& parts) {
+  message_.model = parts.model_identity().substr(0, kLongestIdentity);
+}
+
+std::span<const std::uint8_t> RateEncoder::encode(const Increment& in, const ChainOutput& out,
+                                                  const ChainParts& parts) noexcept {
+  message_.utime = in.utime_ns / 1000;
+  message_.seq = static_cast<std::int64_t>(in.sequence);
+  message_.sensor_time_ns = in.device_time_ns;
+  message_.arrival_ns = in.arrival_ns != 0 ? in.arrival_ns + in.wall_shift_ns : 0;
+  message_.dt = in.dt_s;
+  message_.merged = static_cast<std::int32_t>(in.samples);
+  message_.flags = message_flags(in, out);
+  message_.status = static_cast<std::int32_t>(in.status);
+  const auto copy = [n = message_.raw.size()](const Axes& from, std::vector<double>& to) {
+    std::copy_n(from.begin(), n, to.begin());
+  };
+  copy(in.rate_radps, message_.raw);
+  copy(out.compensated_radps, message_.compensated);
+  copy(out.estimate.denoised_radps, message_.denoised);
+  copy(out.estimate.variance_rad2ps2, message_.variance);
+  copy(out.delta_theta_rad, message_.delta_theta);
+  copy(in.covered_s, message_.covered);
+  copy(out.angle_rad, message_.angle);
+  copy(out.estimate.innovation_radps, message_.innovation);
+  copy(out.estimate.innovation_variance, message_.innovation_variance);
+  copy(out.estimate.gain, message_.gain);
+  const EstimatorHealth* const health = parts.health();
+  message_.group_delay = health != nullptr ? health->group_delay_s : 0.0;
+  message_.correlation_time = health != nullptr ? health->correlation_time_s : 0.0;
+  const int size = message_.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
+  return {buffer_.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+}
 
 std::unique_ptr<InertialEncoder> make_inertial_encoder(std::string_view type, const SensorFacts& facts) {
   if (type == kInertialType) return std::make_unique<IncrementEncoder<inertial_t>>(facts.temperature_channel);
