@@ -23,8 +23,7 @@ class ChangeTest {
   static constexpr std::size_t kShaking = Trackers::kMost;
 
   // Returns the tracker that predicts the change, kShaking, or nullopt; to be called before
-  // Trackers::correct(). rarity: Outliers::rarity(); lag: of the filter
-  // at rest, samples.
+  // Trackers::correct(). rarity: Outliers::rarity(); lag: of the filter at rest, samples.
   std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, double rarity,
                                   double lag) noexcept;
   // To be called when a manoeuvre is detected or the filter starts; keeps what is known of the noise.
