@@ -59,12 +59,17 @@ void convert(RowBlock& rows, const std::vector<FileColumn>& columns) {
 // Needs all rows, to find out whether an angle stays within one turn.
 void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& notes,
               const std::string& path) {
-  if (all.size() < 2) return;
-  // Stamps that scatter, or in ticks as long as the samples are apart, would make some rates twice as large as others.
+  if (all.size() < 2) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (columns[i].angle_rad()) std::ranges::fill(all.columns[i], kMissing);
+    return;
+  }
   const SampleClock clock = sample_clock(all.time_s);
-  RowTimes times(all.time_s, clock);
-  std::vector<double> time_s;
-  for (const double stamp_s : all.time_s) time_s.push_back(times.next(stamp_s));
+  // Stamps that scatter, or in ticks as long as the samples are apart, would make some rates twice as large as others; a few
+  // do not show it.
+  std::vector<double> time_s = all.time_s;
+  if (RowTimes times(all.time_s, clock); all.size() >= 64)
+    for (double& stamp_s : time_s) stamp_s = times.next(stamp_s);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const FileColumn& column = columns[i];
     if (!column.angle_rad()) continue;

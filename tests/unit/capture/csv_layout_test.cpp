@@ -74,6 +74,18 @@ TEST(CsvLayout, DifferencesOfAnAngleBecomeTheRate) {
   EXPECT_NEAR(counting.rate_radps[0][1], 300 * kDegree, 1e-12);
 }
 
+// A KVH 1750 at 770 Hz in stamps of whole milliseconds (kvh_1750_troubleshooting): steps of one and of two. 1 mrad each.
+TEST(CsvLayout, CoarseStampsMakeNoIncrementLarger) {
+  for (const bool increments : {true, false}) {
+    std::string text = "t,d\n";
+    for (int i = 0; i < 2000; ++i)
+      text += std::to_string(1000 * i / 770) + "," + std::to_string(increments ? 1 : i) + "\n";
+    const Capture got = parse_capture(
+        text, "a.csv", layout({increments ? "rate_x_radps=d:mrad/sample" : "rate_x_radps=d:mrad"}, "t:ms"));
+    for (std::size_t i = 1; i < 2000; ++i) ASSERT_NEAR(got.rate_radps[0][i], 0.77, 2e-4) << increments << i;
+  }
+}
+
 TEST(CsvLayout, IncrementsAreTheTurnWithinAPeriod) {
   // 0.36 arcsec in 10 ms are 36 arcsec/s: behind a hole as well, and in a row that came late.
   const Capture got =
