@@ -41,9 +41,9 @@ std::string describe(const Event& event) {
           event.sequence);
     case EventKind::clock_refused:
       return fmt::format(
-          "the device's clock {} by arrivals and number of samples: not used from number {} on; before, "
-          "intervals and angles are wrong by this factor",
-          clock_speed(event.a), event.sequence);
+          "the device's clock {} by arrivals and number of samples: not used from number {} on; "
+          "intervals and angles before have its error",
+          clock_speed(event.a, kRightButJumps), event.sequence);
     case EventKind::label_moved:
       return fmt::format(
           "the device stood still for a while, or its deliveries take longer or shorter than before: times "

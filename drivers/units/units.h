@@ -19,9 +19,11 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
 // Seconds per unit.
 std::optional<double> time_unit(std::string_view text);
 
-// "runs 1000 times too slow (perhaps in us, expected ns)". runs: time by a clock in ns per true time; "" for
+// "runs 1000 times too slow (perhaps in us, expected ns)". runs: time by a clock in ns per true time; `right` for
 // what a clock may err.
-std::string clock_speed(double runs);
+std::string clock_speed(double runs, const char* right = "");
+// Of a clock that is refused at the right speed.
+inline constexpr const char* kRightButJumps = "is right on average but jumps with nearly every sample";
 
 // value in the wanted unit = value * scale + offset
 struct UnitConversion {

@@ -33,12 +33,17 @@ std::vector<Stretch> stuck_runs(std::span<const double> rate, std::span<const St
   return stuck;
 }
 
-std::string in_words(const std::vector<Stretch>& stuck, std::span<const double> rate,
-                     const TimeOfSample& time_s) {
-  const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
+double largest(std::span<const double> rate) {
   double most = 0.0;
   for (const double value : rate)
     if (std::abs(value) > most) most = std::abs(value);
+  return most;
+}
+
+std::string in_words(const std::vector<Stretch>& stuck, std::span<const double> rate,
+                     const TimeOfSample& time_s) {
+  const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
+  const double most = largest(rate);
   const bool full_scale =
       std::ranges::any_of(stuck, [&](const Stretch& each) { return std::abs(rate[each.begin]) == most; });
   return "stands still for up to " + std::to_string(longest) + " samples, " + std::to_string(stuck.size()) +
@@ -46,7 +51,7 @@ std::string in_words(const std::vector<Stretch>& stuck, std::span<const double> 
          " s: " +
          (full_scale ? "at its largest value, where the sensor or its number format is at full scale"
                      : "the sensor or the logger repeated a value") +
-         ", not used in these figures";
+         ", not used";
 }
 
 // Interleaved sensors differ by their biases throughout: the scatter of every second, third or fourth sample about its
@@ -95,14 +100,30 @@ void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vect
   find_interleaved(rate, faults);
 }
 
-void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  leave_out_placeholders(rate, time_s, faults);
-  const std::vector<Stretch> stuck = stuck_runs(rate, stretches({}, rate, {}));
+namespace {
+
+void leave_out(const std::vector<Stretch>& stuck, Samples& rate, const TimeOfSample& time_s,
+               std::vector<ValueFault>& faults) {
   if (stuck.empty()) return;
   faults.push_back({"stuck", in_words(stuck, rate, time_s)});
   std::vector<Glitches::Leap> missing;
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
   rate = *without(rate, missing);
+}
+
+}  // namespace
+
+void leave_out_full_scale(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  leave_out_placeholders(rate, time_s, faults);
+  std::vector<Stretch> stuck = stuck_runs(rate, stretches({}, rate, {}));
+  std::erase_if(
+      stuck, [&, most = largest(rate)](const Stretch& each) { return std::abs(rate[each.begin]) != most; });
+  leave_out(stuck, rate, time_s, faults);
+}
+
+void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  leave_out_placeholders(rate, time_s, faults);
+  leave_out(stuck_runs(rate, stretches({}, rate, {})), rate, time_s, faults);
 }
 
 std::optional<Samples> without_leaps(std::span<const double> rate, std::span<const double> error,

@@ -22,7 +22,10 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 // sensors that stand in turn. rate: rad/s, NaN where missing.
 void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// Also sets runs of equal samples to NaN, where the logger repeats its last value or the sensor has not started: of eight
+// Also sets runs at the largest value to NaN, where the sensor or its number format is at full scale: no measurement.
+void leave_out_full_scale(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+
+// Also sets all runs of equal samples to NaN, where the logger repeats its last value or the sensor has not started: of eight
 // or more if nine of ten runs are single samples, else of 64 and 1/4096 of the record if half of the other samples
 // differ from the one before. To be called before the search for rest.
 void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);

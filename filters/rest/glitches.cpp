@@ -22,10 +22,11 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // kLeast its error reaches a fifth.
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLocalAbove = 2.0;
-constexpr std::size_t kOneInAtMost = 100;  // as of faulty rows
-constexpr std::size_t kLongest = 7;        // samples, except at the beginning of a stretch
-constexpr double kRounding = 1e-12;        // relative
-constexpr std::size_t kEnough = 100'000;   // enough second differences for the median
+// More belong to the sensor, as where each turn crosses a dead zone within one sample.
+constexpr std::size_t kOneInAtMost = 200;
+constexpr std::size_t kLongest = 7;       // samples, except at the beginning of a stretch
+constexpr double kRounding = 1e-12;       // relative
+constexpr std::size_t kEnough = 100'000;  // enough second differences for the median
 
 // Calls use(i, away) for each sample that has both neighbours, with its distance from their mean, except where
 // one of the three has the magnitude `without`.
@@ -163,7 +164,7 @@ std::string in_words(const Glitches& glitches, const std::function<double(std::s
   return formatted("%zu sample%s away and back (%sat %s s, up to %.2g times the noise): %s", glitches.count,
                    one ? " leaps" : "s leap", one ? "" : "the first ",
                    told_time(time_s(glitches.first)).c_str(), glitches.most_times,
-                   glitches.few.empty() ? "more than one in a hundred, which these figures take for noise"
+                   glitches.few.empty() ? "more than one in 200, which these figures take for noise"
                                         : "a fault of the logger or the line, dropped");
 }
 

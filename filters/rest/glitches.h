@@ -21,7 +21,7 @@ struct Glitches {
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
-  // All outliers if they are few: at most one in a hundred samples, not counting placeholders. Empty if
+  // All outliers if they are few: at most one in 200 samples, not counting placeholders. Empty if
   // there are more, since frequent outliers belong to the sensor.
   std::vector<Leap> few;
   // Largest leap divided by the noise standard deviation.

@@ -337,13 +337,18 @@ void require_rest(const Rest& rest, double period_s, double first_s) {
   // The quietest samples count as rest in any record: so few prove none.
   const auto few = static_cast<std::size_t>(2.0 * kQuietest * static_cast<double>(rest.samples));
   if (rest.resting() > std::max(rest.turned, few)) return;
+  const std::string was = "the sensor was " + in_words(rest, period_s, first_s) + rest.wrapped +
+                          "; expected a record that is mostly at rest";
+  if (!rest.at_rest.empty()) {
+    const Stretch& longest = *std::ranges::max_element(rest.at_rest, {}, &Stretch::size);
+    const auto time = [&](std::size_t i) { return told_time(first_s + static_cast<double>(i) * period_s); };
+    throw std::invalid_argument(was + "; --from " + time(longest.begin) + " --to " + time(longest.end) +
+                                " reads the longest rest");
+  }
   // One window on either side counts as motion.
   const auto shortest = static_cast<double>((kShortestRest + 2) * samples_of_window(period_s)) * period_s;
   throw std::invalid_argument(
-      "the sensor was " + in_words(rest, period_s, first_s) + rest.wrapped +
-      formatted("; expected a record that is mostly at rest, in the right unit; choose a "
-                "rest of less than %.2g s by --from and --to",
-                shortest));
+      was + formatted(", in the right unit; --from and --to read a rest of less than %.2g s", shortest));
 }
 
 std::vector<Stretch> common(std::span<const Stretch> a, std::span<const Stretch> b) {

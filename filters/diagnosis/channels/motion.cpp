@@ -106,7 +106,8 @@ std::vector<std::string> mark_motion(const std::vector<Record>& records, BlockDa
   }
   if (!names.empty())
     said.push_back(
-        "without a reference rate nothing is traced to what senses motion (" + names +
+        "without a reference rate nothing but the power of its vibration is traced to what senses motion (" +
+        names +
         "), for it may be rotation: a capture with a reference rate would show which, or the "
         "same motion with the sensor's axis reversed (--allow-motion-channels treats it as error)");
   return said;

@@ -56,7 +56,7 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   }
   EXPECT_FALSE(without(before));
 
-  for (std::size_t i = 50; i < rate.size(); i += 60) rate[i] = 1.0;
+  for (std::size_t i = 50; i < rate.size(); i += 100) rate[i] = 1.0;
   const Glitches many = glitches_in(rate);
   EXPECT_GT(many.count, 21U);
   EXPECT_TRUE(many.few.empty());

@@ -164,7 +164,7 @@ template <class Settings>
 OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
                             DenoisedRows& rows) {
   LongTable table = options.input.read_long(capture);
-  table.clean_and_tell(leave_out_repeats, options.capture);
+  table.clean_and_tell(leave_out_full_scale, options.capture);
   leave_out_dead_axes(table, options.capture);
   rows.count_from(table.origin);
   OfflineSettings of = settings();
@@ -208,7 +208,10 @@ void run_denoise(DenoiseOptions options) {
                         : foreign);
     }
     DriverInstance driver = options.input.make_driver(folders);
-    result = denoise_recording(options.input, capture, driver, settings(), rows);
+    // Of unknown rate, its samples have the times of their arrivals, as every command reads them.
+    const bool known = settings().sensor.nominal_rate_hz > 0.0 || driver.description().nominal_rate_hz > 0.0;
+    result = known ? denoise_recording(options.input, capture, driver, settings(), rows)
+                   : denoise_table(options, capture, settings, rows);
   } else {
     result = denoise_table(options, capture, settings, rows);
   }

@@ -167,7 +167,7 @@ void tell_denoised(const DenoiseOptions& options, const DenoisedRows& rows, cons
   for (const std::string& effect : result.left_out) warn("{}: not corrected: {}\n", options.model, effect);
   if (result.refused_clock)
     warn("{}: the device's clock {} by arrivals and number of samples: not used once that was seen\n",
-         options.capture, clock_speed(*result.refused_clock));
+         options.capture, clock_speed(*result.refused_clock, kRightButJumps));
   if (result.counts.mixed > 0)
     warn("{}: {} samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
          options.capture, result.counts.mixed);
