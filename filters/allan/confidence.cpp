@@ -2,6 +2,7 @@
 #include "filters/allan/confidence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -149,14 +150,14 @@ std::vector<AllanInterval> allan_intervals(const AngleSum& sum, Deviation kind,
   std::vector<std::size_t> samples;
   for (const AngleSum::Part& part : sum.parts()) samples.push_back(part.angles - 1);
   std::vector<AllanInterval> intervals;
+  constexpr std::array kPowerLaws = {kQ, kN, kB, kK};
   for (const DeviationPoint& point : points) {
     const double degrees = point.terms > 0 ? EstimateVariance(kind, point.m, samples).degrees(noise) : 0.0;
     intervals.push_back(
         interval_of(point.variance, estimate_law(kind, point.m, samples, noise, degrees), confidence));
     intervals.back().degrees = degrees;
-    intervals.back().strongest = std::ranges::max({kQ, kN, kB, kK}, {}, [&](Term term) {
-      return noise[term] * expected_variance(kind, term, point.m);
-    });
+    intervals.back().strongest = *std::ranges::max_element(
+        kPowerLaws, {}, [&](Term term) { return noise[term] * expected_variance(kind, term, point.m); });
   }
   return intervals;
 }

@@ -61,7 +61,7 @@ class Checks:
             for command in (*READERS, "convert", "hdf5"):
                 to = {"convert": [self.folder / "never.csv"], "hdf5": [self.folder / "never.h5"]}.get(command, [])
                 refused(1, "convert" if to else command, source, *to, *options, says=[str(source), "carry no time", "rate_hz"])
-            refused(1, "denoise", source, "--output", self.folder / "never.csv", *options, says=[str(source), "--rate HZ"])
+            refused(1, "denoise", source, "--output", self.folder / "never.csv", *options, says=[str(source), "rate_hz"])
         assert not (self.folder / "never.csv").exists()
 
     def check_no_output_is_another_file_of_the_run(self):
