@@ -112,17 +112,17 @@ EvenClock even_clock(std::span<const double> time_s) {
       for (std::size_t i = 0; i < stamps; ++i)
         delays[i] = (time_s[begin + i] - time_s[0]) / clock.period_s - static_cast<double>(begin + i);
       least.push_back(*std::ranges::min_element(delays));
-      late.push_back(median_value(delays) - least.back());
+      late.push_back(median(delays) - least.back());
     }
     for (std::size_t i = 0; i + 1 < windows; ++i) least[i] = least[i + 1] - least[i];
     least.pop_back();
-    const double drift = mean_near(least, median_value(least));
+    const double drift = mean_near(least, median(least));
     clock.period_s *= 1.0 + drift / static_cast<double>(stamps);
     for (double& each : least) each = std::abs(each - drift);
   }
-  clock.usual = median_value(least);
+  clock.usual = median(least);
   clock.largest = *std::ranges::max_element(least);
-  clock.late = median_value(late);
+  clock.late = median(late);
   return clock;
 }
 
@@ -135,14 +135,14 @@ SampleClock sample_clock(std::span<const double> time_s) {
   std::vector<double> some = some_steps(time_s, count / 100'000 + 1);
   double longest = 0.0;
   for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, step_after(time_s, i));
-  double period = median_value(some);
+  double period = median(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
   SampleClock clock;
   const auto scatter = [&](double period_s) {
     std::vector<double> away = some;
     for (double& step : away) step = std::abs(step - period_s);
-    return 1.4826 * median_value(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
+    return 1.4826 * median(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
   };
   const EvenClock even = longest <= kGap * period ? EvenClock{} : even_clock(time_s);
   std::ranges::nth_element(some, some.begin() + std::ssize(some) / 10);

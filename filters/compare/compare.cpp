@@ -7,8 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "drivers/row_times/median.h"
 #include "filters/compare/figures.h"
-#include "filters/distributions/median.h"
 #include "filters/rest/rest.h"
 
 namespace ifog {

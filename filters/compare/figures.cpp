@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 
 namespace ifog {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/row_times/median.h"
 #include "filters/allan/runs.h"
-#include "filters/distributions/median.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

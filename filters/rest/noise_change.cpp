@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {

@@ -46,7 +46,7 @@ constexpr double kLongPause = 16.0, kLateTicks = 4.0;
 
 // True if four of five are within 20 % of the median: packets are even, gaps and jitter are not.
 bool are_even(const std::vector<double>& values) {
-  const double usual = median_value(values);
+  const double usual = median(values);
   const auto near =
       std::ranges::count_if(values, [&](double v) { return std::abs(v - usual) <= 0.2 * usual; });
   return 5 * static_cast<std::size_t>(near) >= 4 * values.size();
@@ -67,7 +67,7 @@ bool are_late(const std::vector<double>& departure) {
 // True for stamps of a clock whose tick is the sample period: most steps are one tick, and a late row's longer one is
 // made up by none.
 bool are_ticks(const std::vector<double>& steps) {
-  const double tick = median_value(steps);
+  const double tick = median(steps);
   const auto count = [&](auto is) {
     return 100 * static_cast<std::size_t>(std::ranges::count_if(steps, is));
   };
@@ -85,7 +85,7 @@ std::pair<double, double> mean_and_hole(const std::vector<double>& steps) {
     std::ranges::copy_if(steps, std::back_inserter(kept), [&](double step) { return step < hole_s; });
     mean_s = std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
     std::ranges::copy_if(kept, std::back_inserter(pauses), [&](double step) { return step > mean_s; });
-    if (!pauses.empty()) hole_s = kLongPause * median_value(std::move(pauses));
+    if (!pauses.empty()) hole_s = kLongPause * median(std::move(pauses));
   }
   return {mean_s, hole_s};
 }
@@ -113,11 +113,10 @@ Bursts bursts_of(const std::vector<double>& time_s) {
     elapsed_s += step_s;
   }
   const bool bursts = between.size() >= kFewBursts && within.size() >= between.size() &&
-                      (median_value(rows) < kWindowRows || !are_even(within)) &&
-                      median_value(within) < 0.25 * mean_s;
+                      (median(rows) < kWindowRows || !are_even(within)) && median(within) < 0.25 * mean_s;
   if (bursts && are_even(between) && are_even(rows)) return {mean_s};
   if (bursts && are_late(departure)) return {mean_s, kLateRows, hole_s};
-  return are_ticks(steps) ? Bursts{0.0, kLateRows, kLateTicks * median_value(steps)} : Bursts{};
+  return are_ticks(steps) ? Bursts{0.0, kLateRows, kLateTicks * median(steps)} : Bursts{};
 }
 
 // True if most rows that repeat the one before, with its time, do so by chance, as coarse values do: then rows

@@ -52,13 +52,12 @@ std::string RowRate::change_in_words() const {
       change = window, most_s = std::abs(sum_s);
     sum_s += *window - mean_s;
   }
-  const double before_s = median_value({period_s_.begin(), change}),
-               after_s = median_value({change, period_s_.end()});
+  const double before_s = median({period_s_.begin(), change}), after_s = median({change, period_s_.end()});
   std::vector<double> away_s;
   for (auto window = period_s_.begin(); window != period_s_.end(); ++window)
     away_s.push_back(std::abs(*window - (window < change ? before_s : after_s)));
   const double step_s = std::abs(after_s - before_s);
-  if (step_s < kOther * before_s || step_s < kTimesScatter * median_value(std::move(away_s))) return "";
+  if (step_s < kOther * before_s || step_s < kTimesScatter * median(std::move(away_s))) return "";
   const auto hz = [](double period_s) { return shortest(std::round(1e4 / period_s) / 1e4); };
   std::string text = "rows come at " + hz(before_s) + " Hz until ";
   append_time(text, origin_,

@@ -12,7 +12,7 @@ double median_step_s(const std::vector<double>& time_s) {
   std::vector<double> steps(time_s.size());
   std::adjacent_difference(time_s.begin(), time_s.end(), steps.begin());
   steps.erase(steps.begin());
-  return median_value(std::move(steps));
+  return median(std::move(steps));
 }
 
 void RowBlock::append(RowBlock& rows) {

@@ -4,9 +4,9 @@
 #include <map>
 #include <vector>
 
+#include "drivers/row_times/median.h"
 #include "filters/allan/noise/noise_spectrum.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {

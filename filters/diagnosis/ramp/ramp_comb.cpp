@@ -7,8 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/distributions/median.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/linear/fourier.h"
 

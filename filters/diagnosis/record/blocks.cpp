@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "drivers/row_times/median.h"
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/step_means.h"
-#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/told_time.h"
 

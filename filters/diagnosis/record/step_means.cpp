@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 
 namespace ifog {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <optional>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
-#include "filters/distributions/median.h"
 #include "filters/linear/fourier.h"
 #include "filters/linear/least_squares.h"
 

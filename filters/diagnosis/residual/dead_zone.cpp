@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/residual/periodogram.h"
-#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/finite_sum.h"
 

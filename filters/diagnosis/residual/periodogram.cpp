@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 #include "filters/linear/fourier.h"
 #include "filters/series/finite_sum.h"
 

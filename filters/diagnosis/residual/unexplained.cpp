@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/row_times/median.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/finite_sum.h"
 #include "filters/units/field_units.h"

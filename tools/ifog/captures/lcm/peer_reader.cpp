@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "filters/distributions/median.h"
+#include "drivers/row_times/median.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 
 namespace ifog::tools {
