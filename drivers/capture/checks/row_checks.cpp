@@ -19,7 +19,7 @@ namespace {
 // Converts an angle to the mean rate since the previous row; the first row has none. An angle that stays
 // within one turn wraps by a turn and changes by less than half a turn per row; after a gap its change is
 // unknown.
-void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
+std::vector<double> derivative(std::vector<double> angle_rad, const std::vector<double>& time_s) {
   const auto known = [](double value) { return !std::isnan(value); };
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double angle : angle_rad) {
@@ -45,6 +45,17 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
     before = angle;
     since_s = time_s[i];
   }
+  return angle_rad;
+}
+
+// Mean square of the changes from value to value.
+double roughness(const std::vector<double>& values) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double change = values[i] - values[i - 1];
+    if (!std::isnan(change)) sum += change * change, count += 1.0;
+  }
+  return sum / count;
 }
 
 // Converts to the capture's units; angles stay in rad until as_rates().
@@ -65,11 +76,9 @@ void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& n
     return;
   }
   const SampleClock clock = sample_clock(all.time_s);
-  // Stamps that scatter, or in ticks as long as the samples are apart, would make some rates twice as large as others; a few
-  // do not show it.
-  std::vector<double> time_s = all.time_s;
-  if (RowTimes times(all.time_s, clock); all.size() >= 64)
-    for (double& stamp_s : time_s) stamp_s = times.next(stamp_s);
+  RowTimes times(all.time_s, clock);
+  std::vector<double> even_s;
+  for (const double stamp_s : all.time_s) even_s.push_back(times.next(stamp_s));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const FileColumn& column = columns[i];
     if (!column.angle_rad()) continue;
@@ -77,7 +86,10 @@ void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& n
     if (column.unit.ends_with("/sample")) {
       for (double& value : values) value /= clock.period_s;
     } else {
-      differentiate(values, time_s);
+      // Either the samples are uneven or only their stamps, as those in ticks: with the wrong times the rates are rougher.
+      std::vector<double> by_even = derivative(values, even_s);
+      values = derivative(std::move(values), all.time_s);
+      if (roughness(by_even) < roughness(values)) values = std::move(by_even);
     }
     // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)

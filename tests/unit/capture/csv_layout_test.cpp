@@ -75,14 +75,27 @@ TEST(CsvLayout, DifferencesOfAnAngleBecomeTheRate) {
 }
 
 // A KVH 1750 at 770 Hz in stamps of whole milliseconds (kvh_1750_troubleshooting): steps of one and of two. 1 mrad each.
-TEST(CsvLayout, CoarseStampsMakeNoIncrementLarger) {
-  for (const bool increments : {true, false}) {
+// An angle that is read when a sketch comes round to it is as uneven as its stamps.
+TEST(CsvLayout, AnAngleIsDividedByTheTimeThatItTook) {
+  const auto rates = [](const char* unit, auto&& row) {
     std::string text = "t,d\n";
-    for (int i = 0; i < 2000; ++i)
-      text += std::to_string(1000 * i / 770) + "," + std::to_string(increments ? 1 : i) + "\n";
-    const Capture got = parse_capture(
-        text, "a.csv", layout({increments ? "rate_x_radps=d:mrad/sample" : "rate_x_radps=d:mrad"}, "t:ms"));
-    for (std::size_t i = 1; i < 2000; ++i) ASSERT_NEAR(got.rate_radps[0][i], 0.77, 2e-4) << increments << i;
+    for (int i = 0; i < 2000; ++i) text += row(i);
+    return parse_capture(text, "a.csv", layout({std::string("rate_x_radps=d:") + unit}, "t:ms"))
+        .rate_radps[0];
+  };
+  const auto ticks = [](int i) { return std::to_string(1000 * i / 770) + ","; };
+  const std::vector<double> each = rates("mrad/sample", [&](int i) { return ticks(i) + "1\n"; });
+  const std::vector<double> angle = rates("mrad", [&](int i) { return ticks(i) + std::to_string(i) + "\n"; });
+  std::mt19937 random(3);
+  double at_ms = 0.0;
+  const std::vector<double> uneven = rates("mrad", [&](int) {
+    at_ms += std::uniform_real_distribution<double>(1.0, 9.0)(random);
+    return std::to_string(at_ms) + "," + std::to_string(0.77 * at_ms) + "\n";
+  });
+  for (std::size_t i = 1; i < 2000; ++i) {
+    ASSERT_NEAR(each[i], 0.77, 2e-4) << i;
+    ASSERT_NEAR(angle[i], 0.77, 2e-4) << i;
+    ASSERT_NEAR(uneven[i], 0.77, 1e-5) << i;
   }
 }
 
