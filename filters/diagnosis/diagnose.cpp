@@ -57,8 +57,9 @@ class Run {
     drop_what_a_capture_denies();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
-      if (!smooth(*harmful)) {
-        say(harmful_in_words(result_.effects[*harmful].effect));
+      const bool by_chance = least_proven().has_value();
+      if (by_chance || !smooth(*harmful)) {
+        say(harmful_in_words(result_.effects[*harmful].effect, by_chance));
         drop(*harmful);
       }
       fit_jointly();

@@ -31,10 +31,11 @@ bool has_a_value(const std::vector<Record>& records, const std::string& name) {
 
 }  // namespace
 
-std::string harmful_in_words(const Effect& effect) {
+std::string harmful_in_words(const Effect& effect, bool by_chance) {
   return "the innovations suggest " + name_of(effect) +
-         ", but by its own error bar it is chance, or the daemon's own correction by it would leave a larger "
-         "error than none: not used";
+         (by_chance
+              ? ", but by its own error bar it is chance: not used"
+              : ", but the daemon's own correction by it would leave a larger error than none: not used");
 }
 
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,

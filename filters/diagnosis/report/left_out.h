@@ -14,7 +14,7 @@
 namespace ifog {
 
 // Effect that increases an error in the daemon's correction.
-std::string harmful_in_words(const Effect& effect);
+std::string harmful_in_words(const Effect& effect, bool by_chance);
 
 // Effects of one channel that a capture refutes.
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,

@@ -173,9 +173,10 @@ std::optional<std::size_t> least_missed_effect(const std::vector<Record>& record
 
 double smoothing_s(const std::vector<Record>& records, const Diagnosis& diagnosis, std::size_t at,
                    double most_s, double sample_s) {
-  double least = std::numeric_limits<double>::infinity(), best_s = 0.0;
   const std::string name{time_constant_name(diagnosis.effects[at].effect)};
-  for (double trial_s = parameter(diagnosis.effects[at].effect, name); trial_s <= most_s; trial_s *= 1.5) {
+  double least = std::numeric_limits<double>::infinity(),
+         best_s = parameter(diagnosis.effects[at].effect, name);
+  for (double trial_s = best_s; trial_s <= most_s; trial_s *= 1.5) {
     const Model model = model_of(diagnosis, [&](std::size_t i, Effect& effect) {
       for (ModelParameter& each : effect.parameters)
         if (i == at && each.name == name) each.value = trial_s;
