@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/flight/flight_input.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
@@ -14,7 +19,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "drivers/host/driver_instance.h"
-#include "drivers/system/unnamed_file.h"
+#include "drivers/system/fd.h"
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
@@ -100,7 +105,8 @@ DriverInstance FlightInput::made() const {
     DriverSettings own;
     if (configured_ != nullptr)
       own = with_files_in(configured_->folder, plugin->table(), configured_->options);
-    std::vector<UnnamedFile> carried;
+    std::vector<Fd>
+        carried;  // in memory: some file systems do not open an unlinked file by its descriptor's name
     for (const auto& [key, value] : header().options) {
       const bool names_file = std::find(files.begin(), files.end(), key) != files.end();
       const auto found = header().files.find(value);
@@ -110,9 +116,11 @@ DriverInstance FlightInput::made() const {
                       key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE");
       settings[key] = !names_file || found != header().files.end() ? value : own.at(key);
       if (!names_file || found == header().files.end()) continue;
-      UnnamedFile& text = carried.emplace_back();
-      text.write(0, found->second.data(), found->second.size());
-      settings[key] = "/proc/self/fd/" + std::to_string(text.descriptor());
+      const Fd& text = carried.emplace_back(memfd_create("carried", MFD_CLOEXEC));
+      const std::string& content = found->second;
+      if (text < 0 || ::write(text, content.data(), content.size()) != std::ssize(content))
+        throw refusal("{}: {}", key, std::generic_category().message(errno));
+      settings[key] = "/proc/self/fd/" + std::to_string(text);
     }
     return driver_of_run(header().driver, settings, folders_);
   });
