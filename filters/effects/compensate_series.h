@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "drivers/row_times/sample_clock.h"
 #include "filters/effects/compensator.h"
-#include "filters/series/median_step.h"
 
 namespace ifog {
 
@@ -19,9 +19,9 @@ struct SeriesToCompensate {
   std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: no values
 };
 
-// Median step; a step more than half a step longer is a gap. 0 for fewer than two samples.
+// A step more than half of this longer is a gap. 0 for fewer than two samples.
 inline double usual_step(std::span<const double> time_s) {
-  return time_s.size() < 2 ? 0.0 : median_step(time_s);
+  return time_s.size() < 2 ? 0.0 : sample_clock(time_s).period_s;
 }
 
 // Calls use(sample, output) for every sample in order. The first sample covers as much time as the second.
