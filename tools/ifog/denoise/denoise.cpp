@@ -209,7 +209,8 @@ void run_denoise(DenoiseOptions options) {
     }
     DriverInstance driver = options.input.make_driver(folders);
     // Of unknown rate, its samples have the times of their arrivals, as every command reads them.
-    const bool known = settings().sensor.nominal_rate_hz > 0.0 || driver.description().nominal_rate_hz > 0.0;
+    const bool known = options.nominal_rate_hz > 0.0 || driver.description().nominal_rate_hz > 0.0 ||
+                       (configured && configured->sensor.nominal_rate_hz > 0.0);
     result = known ? denoise_recording(options.input, capture, driver, settings(), rows)
                    : denoise_table(options, capture, settings, rows);
   } else {
