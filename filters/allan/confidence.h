@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Confidence intervals of measured variances, from the distribution of the estimator under the noise of the
-// record The noise is fitted to the whole record, not to the few averages at τ, so its type
+// record. The noise is fitted to the whole record, not to the few averages at τ, so its type
 // may change along τ.
 #pragma once
 

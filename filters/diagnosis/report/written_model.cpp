@@ -136,8 +136,7 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
 
 namespace {
 
-// Of the effects that the daemon corrects, with `change` applied to each by its index; those it returns false for are left
-// out.
+// Model of the effects that the daemon corrects. change: gets an effect's index and may change it; false leaves it out.
 template <class Change>
 Model model_of(const Diagnosis& diagnosis, const Change& change) {
   Model model;
