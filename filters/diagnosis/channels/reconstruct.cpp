@@ -10,12 +10,11 @@
 
 #include "drivers/row_times/median.h"
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/step_means.h"
 
 namespace ifog {
 namespace {
 
-// If more readings than this repeat the one before, the steps are coarser than the channel's changes.
-constexpr double kRepeats = 0.6;
 // Largest number of readings, or means of readings, for the estimate of smoothness.
 constexpr std::size_t kMostReadings = 4096;
 // Required gain of log-likelihood over a random walk, whose jumps a spline would blur.
@@ -38,28 +37,60 @@ double change_of(std::span<const Reading> readings) {
   return changes.empty() ? 0.0 : median(std::move(changes));
 }
 
-bool is_coarse(std::span<const Reading> readings) {
-  std::size_t repeats = 0;
-  for (std::size_t i = 1; i < readings.size(); ++i)
-    repeats += readings[i].value == readings[i - 1].value ? 1 : 0;
-  return static_cast<double>(repeats) > kRepeats * static_cast<double>(readings.size());
+// Readings that repeat a neighbour. Where a coarse reading crosses from one level to the next, noise makes others.
+std::vector<Reading> repeated(std::span<const Reading> readings) {
+  std::vector<Reading> found;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const bool before = i > 0 && readings[i - 1].value == readings[i].value;
+    const bool after = i + 1 < readings.size() && readings[i + 1].value == readings[i].value;
+    if (before || after) found.push_back(readings[i]);
+  }
+  return found;
+}
+
+// Where a coarse reading changes from one level to another.
+struct Crossing {
+  double first, last;  // steps between which it is
+  double value;
+};
+
+// While a channel crosses from one level to the next, noise makes its reading flip. Crossings of one value whose distance
+// is at most their own length are one.
+void join(std::vector<Crossing>& crossings) {
+  for (std::size_t before = 0; before != crossings.size();) {
+    before = crossings.size();
+    std::vector<Crossing> joined;
+    for (const Crossing& each : crossings) {
+      Crossing* const last = joined.empty() ? nullptr : &joined.back();
+      if (last && last->value == each.value &&
+          each.first - last->last <= last->last - last->first + each.last - each.first)
+        last->last = each.last;
+      else
+        joined.push_back(each);
+    }
+    crossings = std::move(joined);
+  }
 }
 
 // Positions where a coarse reading changes, at half a step; a change over several steps is one.
 std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
-  std::vector<Reading> found;
+  std::vector<Crossing> found;
   for (std::size_t i = 1; i < readings.size(); ++i) {
     const Reading &before = readings[i - 1], &after = readings[i];
     const double change = after.value - before.value;
     if (change == 0.0) continue;
     if (std::abs(change) < 1.5 * step) {
-      found.push_back({0.5 * (before.step + after.step), 0.5 * (after.value + before.value)});
+      found.push_back({before.step, after.step, 0.5 * (after.value + before.value)});
     } else {
-      if (found.empty() || found.back().step < before.step) found.push_back(before);
-      found.push_back(after);
+      if (found.empty() || found.back().last < before.step)
+        found.push_back({before.step, before.step, before.value});
+      found.push_back({after.step, after.step, after.value});
     }
   }
-  return found;
+  join(found);
+  std::vector<Reading> middles;
+  for (const Crossing& each : found) middles.push_back({0.5 * (each.first + each.last), each.value});
+  return middles;
 }
 
 // What drives the channel between its readings: a random walk of its slope, or of its level.
@@ -211,8 +242,9 @@ Reconstruction as_read(std::span<const double> values) { return {{values.begin()
 }  // namespace
 
 Reconstruction reconstruct(std::span<const double> values, std::span<const std::uint8_t> read) {
-  const std::vector<Reading> readings = readings_in(values, read);
-  const bool coarse = is_coarse(readings);
+  std::vector<Reading> readings = readings_in(values, read);
+  const bool coarse = is_coarse(values);
+  if (coarse) readings = repeated(readings);
   const double step = coarse ? change_of(readings) : 0.0;
   const std::vector<Reading> used = coarse ? crossings(readings, step) : readings;
   if (used.size() < 8) return as_read(values);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "drivers/row_times/median.h"
@@ -26,6 +27,7 @@ void bridge_holes(const std::vector<std::uint8_t>& known, std::span<double> mean
 
 // A channel is lost, not between its readings, if it has none for more than this many of their usual distances.
 constexpr double kLost = 3.0;
+constexpr double kRepeats = 0.6;  // least share of a coarse channel's readings
 
 // Where the channel is lost, its bridged values are used like readings: a spline would not be bound there.
 void use_bridges(std::vector<std::uint8_t>& read) {
@@ -62,28 +64,45 @@ StepStarts step_starts(const Record& record, double fine_s, std::size_t steps) {
   return first;
 }
 
+bool is_coarse(std::span<const double> readings) {
+  std::vector<double> changes;
+  double last = std::nan(""), least = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  for (const double value : readings) {
+    if (!std::isfinite(value)) continue;
+    ++count;
+    const double change = std::abs(value - std::exchange(last, value));
+    if (change > 0.0) changes.push_back(change), least = std::min(least, change);
+  }
+  if (changes.empty() || static_cast<double>(changes.size()) > (1.0 - kRepeats) * static_cast<double>(count))
+    return false;
+  return median(std::move(changes)) < 1.5 * least;
+}
+
 StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds) {
   StepMeans out;
   auto& [means, power, read] = out;
   const std::size_t steps = starts.size() - 1;
   std::vector<std::uint8_t> known(steps);
+  const bool coarse = is_coarse(values);
   bool any = false;  // steps before the first value use that value
   double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
-    double sum = 0.0, square = 0.0;
+    double sum = 0.0, square = 0.0, last = 0.0;
     std::uint32_t count = 0;
     for (std::size_t i = starts[k]; i < starts[k + 1]; ++i) {
       if (!std::isfinite(values[i])) continue;
-      sum += values[i];
+      sum += last = values[i];
       square += values[i] * values[i];
       ++count;
     }
-    if (count > 0) held = sum / count;
+    const double mean = count > 0 ? sum / count : 0.0;
+    if (count > 0) held = coarse ? last : mean;
     if (count > 0 && !std::exchange(any, true)) std::ranges::fill(means, held);
     known[k] = count > 0 || (holds && any && starts[k] < starts[k + 1]) ? 1 : 0;
     means.push_back(held);
     read.push_back(known[k] != 0 || !any || starts[k] == starts[k + 1] ? 1 : 0);
-    if (with_power) power.push_back(count ? std::max(0.0, square / count - held * held) : 0.0);
+    if (with_power) power.push_back(count ? std::max(0.0, square / count - mean * mean) : 0.0);
   }
   bridge_holes(known, means);
   use_bridges(read);

@@ -18,12 +18,16 @@ std::size_t fine_index(const Record& record, std::size_t i, double fine_s);
 using StepStarts = std::vector<std::size_t>;
 StepStarts step_starts(const Record& record, double fine_s, std::size_t steps);
 
+// True if most readings repeat the one before and most changes are by the least one: the resolution is coarser than what
+// the channel changes by from one to the next. Not finite values are left out.
+bool is_coarse(std::span<const double> readings);
+
 struct StepMeans {
   std::vector<double> means, power;  // power: variance within a step
   std::vector<std::uint8_t> read;    // 0: rows without a value, interpolated between those with one
 };
 
-// Means of a column over each step; linear interpolation where there is no value. holds: a switch, which keeps its value
+// Means of a column over each step, of a coarse one its last reading, so that it keeps its levels; linear interpolation where there is no value. holds: a switch, which keeps its value
 // over rows without one.
 StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds);
 

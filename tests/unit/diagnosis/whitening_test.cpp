@@ -139,6 +139,25 @@ TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
   EXPECT_LT(rms_difference(found.values, truth), 0.1);
 }
 
+// A gyro's own thermometer, at 10 Hz: noise makes it flip where it crosses, for seconds.
+TEST(Reconstruct, AReadingThatFlipsBetweenTwoDegreesIsKnownToATenth) {
+  test::Noise noise(2, 0.02);
+  std::vector<double> truth, read;
+  StepStarts starts;
+  constexpr std::size_t kSamples = 144000, kStep = 3;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double t = 0.1 * static_cast<double>(i);
+    const double kelvin = 50.0 - 25.0 * std::exp(-t / 3000.0) + 2.0 * std::sin(2.0 * M_PI * t / 2500.0);
+    read.push_back(std::round(kelvin + noise()));
+    if (i % kStep == 1) truth.push_back(kelvin);
+    if (i % kStep == 0) starts.push_back(i);
+  }
+  starts.push_back(kSamples);
+  const Reconstruction found = reconstruct(step_means(read, starts, false, false).means);
+  EXPECT_TRUE(found.smooth);
+  EXPECT_LT(rms_difference(found.values, truth), 0.1);
+}
+
 // RMS error of what is made of a channel that is read with a noise of 0.01.
 double left_of_noise(const std::vector<double>& truth, unsigned seed) {
   test::Noise noise(seed, 0.01);
