@@ -12,7 +12,7 @@
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/report/findings.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 namespace {

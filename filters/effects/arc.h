@@ -6,15 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/model.h"
 
 namespace ifog {
-
-[[nodiscard]] inline bool is_of_angle(Form form) noexcept {
-  return form == Form::kCosine || form == Form::kSine;
-}
 
 // Modulus of the channel's wraps; the period of a harmonic is a fraction of it.
 [[nodiscard]] inline double turn_of(const std::string& channel, double period) {

@@ -9,6 +9,7 @@
 #include "filters/effects/arc.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {
@@ -91,7 +92,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
                              const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges) {
   const auto form = form_named(effect.form);
   if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
-  if (describes_noise(*form) || !carries_over(*form) || effect.shown_only) {
+  if (!carries_over(*form) || effect.shown_only) {
     left_out_.push_back(name_of(effect));
     if (*form == Form::kDeadZone) add_zone(effect, axes);
     return;

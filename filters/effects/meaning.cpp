@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "filters/model_file/channel_names.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 namespace {

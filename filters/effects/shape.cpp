@@ -73,8 +73,7 @@ ShapeSettings shape_settings(const Effect& effect) {
 
 ShapeSettings with_shape_settings(const Effect& effect) {
   const auto form = form_named(effect.with_form);
-  if (!form || *form == Form::kProduct || *form == Form::kLookup || is_of_angle(*form) ||
-      !has_channel(*form)) {
+  if (!form || !may_be_factor(*form)) {
     throw std::invalid_argument("product with form " + in_quotes(effect.with_form) +
                                 ", expected a form of a channel other than product, lookup, cosine and sine");
   }

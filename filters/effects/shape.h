@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "filters/effects/form.h"
 #include "filters/effects/reach.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 

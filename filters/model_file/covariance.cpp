@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "filters/model_file/effect_parameters.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 namespace {
@@ -47,8 +47,9 @@ std::vector<std::size_t> rows_in_file(const std::vector<Effect>& effects) {
   std::size_t row = 0;
   for (const Effect& effect : effects) {
     const std::size_t end = row + effect.parameters.size();
+    const std::optional<Form> form = form_named(effect.form);
     for (; row < end; ++row)
-      if (is_corrected(effect.form)) rows.push_back(row);
+      if (form && carries_over(*form)) rows.push_back(row);
   }
   return rows;
 }

@@ -8,7 +8,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
-#include "filters/model_file/effect_parameters.h"
+#include "filters/model_file/form.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/rules/names.h"
@@ -198,11 +198,11 @@ std::string channel_of(Table& table, const std::string& key, const std::string& 
 }
 
 // Parameter names must belong to the form and be unique.
-void check_name(Table& item, const std::string& name, const std::vector<ParameterRule>& rules,
+void check_name(Table& item, const std::string& name, const std::vector<ParameterRule>& rules, Form form,
                 const Effect& effect) {
   for (const ModelParameter& other : effect.parameters)
     if (other.name == name) item.fail("name", item.find("name"), "this is the effect's second of that name");
-  if (rules_of_form(effect.form)->open) return;
+  if (describes_noise(form)) return;
   std::vector<std::string_view> known;
   std::string list;
   for (const ParameterRule& rule : rules) {
@@ -215,13 +215,13 @@ void check_name(Table& item, const std::string& name, const std::vector<Paramete
                 (known.empty() ? "" : "; it has: " + list));
 }
 
-void read_parameters(Table& table, Effect& effect) {
-  const std::vector<ParameterRule> rules = parameters_of(effect.form, effect.with_form);
+void read_parameters(Table& table, Form form, Effect& effect) {
+  const std::vector<ParameterRule> rules = parameters_of(form, form_named(effect.with_form));
   for (Table& item : table.tables("parameter")) {
     ModelParameter parameter;
     parameter.name = item.words("name");
     if (parameter.name.empty()) item.fail("name", nullptr, "expected the name of a parameter");
-    check_name(item, parameter.name, rules, effect);
+    check_name(item, parameter.name, rules, form, effect);
     parameter.value = item.required("value");
     for (const ParameterRule& rule : rules)
       if (rule.name == parameter.name && !allows(rule, parameter.value))
@@ -234,8 +234,8 @@ void read_parameters(Table& table, Effect& effect) {
   }
 }
 
-void require_parameters(Table& table, const Effect& effect) {
-  for (const ParameterRule& rule : parameters_of(effect.form, effect.with_form)) {
+void require_parameters(Table& table, Form form, const Effect& effect) {
+  for (const ParameterRule& rule : parameters_of(form, form_named(effect.with_form))) {
     bool there = !rule.needed;
     for (const ModelParameter& parameter : effect.parameters) there = there || parameter.name == rule.name;
     if (!there)
@@ -245,20 +245,27 @@ void require_parameters(Table& table, const Effect& effect) {
   }
 }
 
+std::vector<std::string_view> names_of_forms(bool (*are)(Form)) {
+  std::vector<std::string_view> names;
+  for (const FormRules& rules : form_rules())
+    if (are(rules.form)) names.push_back(rules.name);
+  return names;
+}
+
 // Checks the inputs that the form needs; the sensor is checked elsewhere.
-void require_source(Table& table, const Effect& effect) {
-  if (!is_of_channel(effect.form)) return;
+void require_source(Table& table, Form form, const Effect& effect) {
+  if (!has_channel(form) || form == Form::kDeadZone || form == Form::kEarthRate) return;
   if (effect.channel.empty())
     table.fail("channel", table.find("channel"),
                "form " + effect.form + " is of a channel, expected its name");
-  if (effect.form == "lookup" && effect.table_x.size() < 2)
+  if (form == Form::kLookup && effect.table_x.size() < 2)
     table.fail("table_x", table.find("table_x"), "form lookup needs a table, expected at least two knots");
-  if ((effect.form == "cosine" || effect.form == "sine") && !(effect.period > 0.0))
+  if (is_of_angle(form) && !(effect.period > 0.0))
     table.fail("period", table.find("period"),
                "form " + effect.form + " needs its period, expected more than 0");
-  if (effect.form != "product") return;
-  const std::vector<std::string_view>& forms = forms_of_product();
-  if (std::find(forms.begin(), forms.end(), effect.with_form) == forms.end())
+  if (form != Form::kProduct) return;
+  const std::vector<std::string_view> forms = names_of_forms(may_be_factor);
+  if (std::ranges::find(forms, effect.with_form) == forms.end())
     table.fail("with_form", table.find("with_form"),
                "no form that a product can be with, expected " + one_of(effect.with_form, forms));
   if (effect.with_channel.empty())
@@ -271,9 +278,9 @@ Effect read_effect(Table table) {
   effect.line = table.line();
   effect.form = table.words("form");
   if (effect.form.empty()) table.fail("form", nullptr, "expected the name of a form");
-  if (rules_of_form(effect.form) == nullptr) {
-    std::vector<std::string_view> known;
-    for (const FormRules& rules : form_rules()) known.push_back(rules.form);
+  const std::optional<Form> form = form_named(effect.form);
+  if (!form) {
+    const auto known = names_of_forms([](Form) { return true; });
     table.fail("form", table.find("form"), "unknown form" + did_you_mean(effect.form, known));
   }
   effect.channel = channel_of(table, "channel", "minus_channel");
@@ -295,10 +302,10 @@ Effect read_effect(Table table) {
       table.fail("table_x", table.find("table_x"), "expected knots that increase");
     }
   }
-  read_parameters(table, effect);
+  read_parameters(table, *form, effect);
   table.done();
-  require_source(table, effect);
-  require_parameters(table, effect);
+  require_source(table, *form, effect);
+  require_parameters(table, *form, effect);
   return effect;
 }
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <tuple>
 
-#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kOftenTogether = 0.25;  // share of the gyros that show the rar
 
 bool can_be_of_a_type(const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
-  if (!form || effect.shown_only || describes_noise(*form) || !carries_over(*form)) return false;
+  if (!form || effect.shown_only || !carries_over(*form)) return false;
   // Ageing and transitions are individual to each coil.
   return *form != Form::kLookup && *form != Form::kRebuiltRamp && *form != Form::kEarthRate &&
          *form != Form::kRateRamp && *form != Form::kTransition && *form != Form::kBias;

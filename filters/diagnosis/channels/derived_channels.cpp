@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

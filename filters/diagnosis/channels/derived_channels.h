@@ -7,6 +7,7 @@
 #include <string>
 
 #include "filters/diagnosis/record/owned_records.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 

@@ -11,6 +11,7 @@
 #include "drivers/row_times/median.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/step_means.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/units/field_units.h"
 
 namespace ifog {

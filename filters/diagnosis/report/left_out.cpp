@@ -12,8 +12,8 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/form.h"
 #include "filters/rest/rest.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"

@@ -11,8 +11,8 @@
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/form.h"
 
 namespace ifog {
 namespace {

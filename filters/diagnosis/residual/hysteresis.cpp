@@ -7,6 +7,7 @@
 
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {

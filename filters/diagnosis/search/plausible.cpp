@@ -9,6 +9,7 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 

@@ -11,6 +11,7 @@
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
 
 namespace ifog {
 namespace {

@@ -4,7 +4,7 @@
 // temperature. What is written is run over a second capture, whose truth is the same equation.
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/compensated_error.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"

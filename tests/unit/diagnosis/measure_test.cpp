@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include "filters/diagnosis/measure.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/test.h"
 

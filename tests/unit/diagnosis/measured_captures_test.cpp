@@ -6,7 +6,7 @@
 
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "filters/units/field_units.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tests/unit/diagnosis/findings.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/effects/compensator.h"
 #include "filters/effects/compensate_series.h"
+#include "filters/model_file/channel_names.h"
 #include "tests/unit/effects/compensated.h"
 #include "tests/unit/test.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/stat.h>
 
-#include "filters/effects/form.h"
 #include "filters/effects/shape.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
-#include "filters/model_file/effect_parameters.h"
+#include "filters/model_file/form.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/model_file/sha256.h"
@@ -273,21 +272,6 @@ TEST(ModelFile, WhatAnEffectTakesItsValueFromIsRefusedByLine) {
            {head + "[filter]\nrule = \"ckff\"\n", "3: filter.rule = 'ckff': expected one of ckf, "}})
     EXPECT_TRUE(complaint(text).starts_with(std::string("m.toml:") + place)) << text << complaint(text);
   EXPECT_EQ(complaint(head + "[filter]\nstate = \"arma(2,1) + harmonic\"\n"), "accepted");
-}
-
-// The file's rules are those of the mathematics, which has them by the forms themselves.
-TEST(ModelFile, TheFormsOfAChannelAndOfAProductAreThoseThatCanBe) {
-  for (const FormRules& rules : form_rules()) {
-    const Form form = form_named(rules.form).value();
-    const bool reported = form == Form::kDeadZone || form == Form::kEarthRate;
-    EXPECT_EQ(is_of_channel(rules.form), has_channel(form) && !reported) << rules.form;
-    Effect product;
-    product.form = "product";
-    product.with_form = rules.form;
-    const bool can_be = test::refusal([&] { (void)with_shape_settings(product); }, "").empty();
-    const auto& forms = forms_of_product();
-    EXPECT_EQ(std::find(forms.begin(), forms.end(), rules.form) != forms.end(), can_be) << rules.form;
-  }
 }
 
 TEST(ModelAxes, WhatIsOfNoAxisHereIsTold) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/console/say.h"
 

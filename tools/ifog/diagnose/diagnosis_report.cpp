@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
-#include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
+#include "filters/model_file/channel_names.h"
+#include "filters/model_file/form.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"

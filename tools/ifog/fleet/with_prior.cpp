@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "filters/effects/form.h"
 #include "filters/model_file/covariance.h"
+#include "filters/model_file/form.h"
 #include "filters/population/shrinkage.h"
 
 namespace ifog::tools {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "drivers/system/shell_word.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "filters/model_file/toml_text.h"
 #include "filters/units/field_units.h"
 #include "tools/report/coefficients.h"

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "filters/effects/form.h"
+#include "filters/model_file/channel_names.h"
+#include "filters/model_file/form.h"
 #include "filters/units/field_units.h"
 #include "tools/report/text.h"
 

@@ -3,7 +3,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/ramp/ramps_out.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/effects/form.h"
+#include "filters/model_file/form.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/test.h"
 

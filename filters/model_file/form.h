@@ -27,8 +27,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "filters/model_file/channel_names.h"
 #include "filters/model_file/model.h"
 
 namespace ifog {
@@ -63,16 +63,41 @@ enum class Form {
   kQuantisation,
 };
 
+struct ParameterRule {
+  enum class Values { kAny, kNotNegative, kPositive, kNotZero };
+  std::string_view name;
+  bool needed = false;
+  Values values = Values::kAny;
+};
+
+struct FormRules {
+  Form form;
+  std::string_view name;
+  std::vector<ParameterRule>
+      parameters;  // in a model file; unknown ones are errors, as they would be ignored silently
+};
+
+// In the order of Form.
+const std::vector<FormRules>& form_rules();
 std::optional<Form> form_named(std::string_view name);
 std::string_view name_of(Form form);
 
-[[nodiscard]] bool has_channel(Form form);
-[[nodiscard]] bool has_memory(
-    Form form);  // depends on the channel's past, so it cannot be a function of the rate
-[[nodiscard]] bool describes_noise(Form form);  // not subtracted
-[[nodiscard]] bool is_of_time(Form form);       // a function of time that is subtracted
+// Parameters of an effect; a product has its second form's in addition to its coefficient.
+std::vector<ParameterRule> parameters_of(Form form, std::optional<Form> with_form);
+[[nodiscard]] bool allows(const ParameterRule& rule, double value);
+std::string expected(const ParameterRule& rule);  // expected value: "a number above 0"
 
-// True if it is corrected online; see is_corrected() in filters/model_file/effect_parameters.h.
+[[nodiscard]] bool has_channel(Form form);
+// Depends on the channel's past, so it cannot be a function of the rate.
+[[nodiscard]] bool has_memory(Form form);
+[[nodiscard]] bool is_of_angle(Form form) noexcept;  // cosine, sine
+[[nodiscard]] bool may_be_factor(Form form);         // the second of a product
+[[nodiscard]] bool describes_noise(Form form);       // not subtracted; parameters of any name
+[[nodiscard]] bool is_of_time(Form form);            // a function of time that is subtracted
+
+// True if effects of this form are corrected online. False for single events, effects whose phase the next
+// record does not share, dead zones (the rotation is lost) and descriptions of noise. A warm-up is corrected
+// if the time since power-up is known. Of a time ramp the slope is corrected; its origin is part of the bias.
 [[nodiscard]] bool carries_over(Form form);
 
 // Power of a polynomial form, 0 for others.
