@@ -88,7 +88,7 @@ void ChainParts::use_noise(const ChainSettings& settings) {
   if (trial.process_noise <= 0.0) trial.process_noise = 1e-10;
   trial.measurement_noise = 1e-10;
   const Estimator check(trial, facts_.axes, period_s_);
-  start_up_.set_stretch(std::clamp(std::round(settings.start_up_s * rate_hz), kLeastStartUp, kMostStartUp));
+  start_up_ = Walk(std::clamp(std::round(settings.start_up_s * rate_hz), kLeastStartUp, kMostStartUp));
 }
 
 // To be called when R is known.
@@ -201,7 +201,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.gap();
   // Repeated values do not show noise.
   const std::optional<Walk::Found> found =
-      start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);
+      start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes);
   if (!found) return;
   double sum = 0.0, axes = 0.0;
   for (const double noise : found->noise) {

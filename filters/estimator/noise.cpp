@@ -2,6 +2,7 @@
 #include "filters/estimator/noise.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -19,7 +20,8 @@ SensorNoise::SensorNoise(const FilterSettings& settings, const KnownNoise& known
       given_(settings.measurement_noise + colour_variance),
       white_(settings.measurement_noise / given_),
       learns_walk_(known.learns_walk),
-      walk_share_(known.walk_share) {
+      walk_share_(known.walk_share),
+      louder_(std::max(2.0 * Walk::kStretch, kHigherNoise_s / period_s), false) {
   for (std::size_t a = 0; a < axes_; ++a) {
     noise_[a] = Noise(known.share[a] * given_);
     if (known.of_long_means) noise_[a].set_long(noise_[a].known());
@@ -36,9 +38,10 @@ void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
 }
 
 void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept {
-  walk_.set_stretch(at_rest ? Walk::kStretch : std::max(2.0 * Walk::kStretch, kHigherNoise_s / period_s_));
-  const std::optional<Walk::Found> found = walk_.take(rate, valid, at_rest);
+  if (std::exchange(at_rest_, at_rest) != at_rest) (at_rest ? louder_ : walk_).moved();
+  const std::optional<Walk::Found> found = (at_rest ? walk_ : louder_).take(rate, valid);
   if (!found) return;
+  const double before = mean_;
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!(found->noise[a] > 0.0)) continue;
@@ -56,7 +59,7 @@ void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, Res
     filter.rule().restart();
   }
   if (!learns_walk_) return;
-  process_noise_ = found->ratio * mean_ / period_s_;
+  process_noise_ = at_rest ? found->ratio * mean_ / period_s_ : process_noise_ * mean_ / before;
   filter.retune(process_noise_);
 }
 

@@ -124,7 +124,10 @@ class SensorNoise {
   // a manoeuvre: R, if the apparent motion is white for a minute.
   void learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept;
   // After missing samples or a change of the averaging time.
-  void gap() noexcept { walk_.gap(); }
+  void gap() noexcept {
+    walk_.gap();
+    louder_.gap();
+  }
 
   // One figure of each axis; 1 for lanes without axis.
   [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept {
@@ -154,7 +157,8 @@ class SensorNoise {
   std::optional<Axes> walk_share_;
   std::array<Noise, kMaxAxes> noise_;
   Lanes share_ = Lanes::Ones();
-  Walk walk_;
+  Walk walk_, louder_;  // at rest, and in what appears to be motion
+  bool at_rest_ = true;
 };
 
 }  // namespace ifog

@@ -27,6 +27,8 @@ constexpr double kMostExcess = 6.7;
 // First long octave, 64 samples, which must have been seen: there the angle of shaking is bounded, and output
 // filters are faster.
 constexpr std::size_t kLong = 6;
+// The same for a piece against the others: by chance one of a million.
+constexpr double kOtherPiece = 5.0;
 // Difference of -2 log-likelihood that refutes: e^6.
 constexpr double kSurely = 12.0;
 // Difference of -2 log-likelihood of one standard error.
@@ -64,26 +66,53 @@ const Shapes& shapes_of(std::size_t trial) noexcept {
 
 }  // namespace
 
-Walk::Walk(double stretch) noexcept : stretch_(stretch) { static_cast<void>(shapes_of(0)); }
+Walk::Walk(double stretch, bool in_pieces) noexcept
+    : stretch_(stretch), of_piece_(in_pieces ? kPiece : stretch) {
+  static_cast<void>(shapes_of(0));
+}
 
 void Walk::recall(double ratio, double samples) noexcept {
   ratio_ = std::clamp(ratio, ratio_of(0), kMostRatio);
   recalled_samples_ = std::min(samples, 0.5 * kMemory * kStretch);
 }
 
-// Starts a new stretch, after a motion.
-void Walk::break_off() noexcept {
+void Walk::moved() noexcept {
   blocks_ = {};
-  lately_ = {};
-  in_stretch_ = 0.0;
+  piece_ = {};
+  in_piece_ = 0.0;
 }
 
-std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept {
+int Walk::against_others() const noexcept {
+  int found = 0;
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    for (std::size_t k = 0; k < kOctaves; ++k) {
+      const double mine = piece_[a].counts[k], others = lately_[a].counts[k];
+      if (mine < kFewest || others < kFewest) continue;
+      const double off = logarithm(std::max(piece_[a].sums[k] / mine, 1e-300)) -
+                         logarithm(std::max(lately_[a].sums[k] / others, 1e-300));
+      if (off * off <= kOtherPiece * kOtherPiece * (2.0 / mine + 2.0 / others)) continue;
+      if (off > 0.0) return 1;
+      found = -1;
+    }
+  return found;
+}
+
+std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes) noexcept {
   if (valid_axes == 0) return {};
-  if (std::exchange(learn_, learn) != learn) break_off();
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
-  if (++in_stretch_ < stretch_) return {};
+  if (++in_piece_ < of_piece_) return {};
+  // What moves more than another piece is no rest.
+  const int louder = against_others();
+  if (louder > 0) {
+    moved();
+    return {};
+  }
+  if (louder < 0) lately_ = {}, in_stretch_ = 0.0;
+  in_stretch_ += std::exchange(in_piece_, 0.0);
+  merge(piece_, 1.0, lately_);
+  piece_ = {};
+  if (in_stretch_ < stretch_) return {};
   const bool seen = std::ranges::all_of(lately_, [&](const Allan& allan) {
     return allan.counts[0] < kMeasured * stretch_ || allan.counts[kLong] >= kFewest;
   });
@@ -93,9 +122,10 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
 void Walk::add(std::size_t axis, double rate) noexcept {
   double mean = rate;
   // An axis whose present level differs does not count for the others.
-  if (const Allan& now = lately_[axis];
-      blocks_[axis][0].has_mean && now.counts[0] >= kFewest && now.sums[0] > 0.0) {
-    const double most = kMostDeviations * std::sqrt(2.0 * now.sums[0] / now.counts[0]);
+  if (const double count = piece_[axis].counts[0] + lately_[axis].counts[0],
+      sum = piece_[axis].sums[0] + lately_[axis].sums[0];
+      blocks_[axis][0].has_mean && count >= kFewest && sum > 0.0) {
+    const double most = kMostDeviations * std::sqrt(2.0 * sum / count);
     const double last = blocks_[axis][0].mean;
     mean = std::clamp(rate, last - most, last + most);
   }
@@ -103,8 +133,8 @@ void Walk::add(std::size_t axis, double rate) noexcept {
     Block& block = blocks_[axis][k];
     if (block.has_mean) {
       const double difference = mean - block.mean;
-      lately_[axis].sums[k] += 0.5 * kIndependent * difference * difference;
-      lately_[axis].counts[k] += kIndependent;
+      piece_[axis].sums[k] += 0.5 * kIndependent * difference * difference;
+      piece_[axis].counts[k] += kIndependent;
     }
     block.has_mean = true;
     block.mean = mean;
@@ -115,6 +145,14 @@ void Walk::add(std::size_t axis, double rate) noexcept {
     }
     mean = 0.5 * (block.half + mean);
   }
+}
+
+void Walk::merge(const Octaves& more, double kept, Octaves& into) noexcept {
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    for (std::size_t k = 0; k < kOctaves; ++k) {
+      into[a].sums[k] = kept * into[a].sums[k] + more[a].sums[k];
+      into[a].counts[k] = kept * into[a].counts[k] + more[a].counts[k];
+    }
 }
 
 double Walk::misfit(const Octaves& of, std::size_t trial) noexcept {
@@ -184,7 +222,7 @@ std::optional<Walk::Found> Walk::judge() noexcept {
     found.noise[a] = level;
     noise = level > 0.0;
   }
-  if (noise && learn_) believe();
+  if (noise) believe();
   found.ratio = ratio_;
   // The long blocks continue if it was noise.
   if (!noise) blocks_ = {};
@@ -195,11 +233,7 @@ std::optional<Walk::Found> Walk::judge() noexcept {
 
 void Walk::believe() noexcept {
   const double kept = 1.0 - 1.0 / kMemory;
-  for (std::size_t a = 0; a < kMaxAxes; ++a)
-    for (std::size_t k = 0; k < kOctaves; ++k) {
-      all_[a].sums[k] = kept * all_[a].sums[k] + lately_[a].sums[k];
-      all_[a].counts[k] = kept * all_[a].counts[k] + lately_[a].counts[k];
-    }
+  merge(lately_, kept, all_);
   samples_ = kept * samples_ + in_stretch_;
   // The recalled ratio is valid until this run has as many samples or contradicts it.
   std::size_t recalled = 0;

@@ -25,22 +25,23 @@ class Walk {
     bool white = false;  // white from one sample on; else from eight on, i.e. coloured
   };
 
-  // Samples of a stretch at rest: octaves up to 256 samples, R to 2 %.
-  static constexpr double kStretch = 4096.0;
+  // Samples of a stretch at rest: octaves up to 256 samples, R to 2 %. It consists of pieces that follow each other or lie
+  // between motions.
+  static constexpr double kStretch = 4096.0, kPiece = 512.0;
   // Blocks of up to 5e5 samples, which show a walk of 1e-10.
   static constexpr std::size_t kOctaves = 20;
 
-  // stretch: samples per stretch.
-  explicit Walk(double stretch = kStretch) noexcept;
+  // Samples of a stretch; not in pieces: they must follow each other.
+  explicit Walk(double stretch = kStretch, bool in_pieces = true) noexcept;
   // Sets the ratio learned by an earlier run from `samples`; valid until this run has as many or contradicts
   // it.
   void recall(double ratio, double samples) noexcept;
-  // Adds measurements, rad/s. If a stretch ends with them and is noise, returns its result. The walk is
-  // learned only with `learn`.
-  std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
-  // Samples are missing here: no mean and no difference reaches across, and the stretch goes on.
+  // Adds measurements, rad/s. If a stretch ends with them and is noise, returns its result.
+  std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes) noexcept;
+  // Samples are missing here: no mean and no difference reaches across, and the piece goes on.
   void gap() noexcept { blocks_ = {}; }
-  void set_stretch(double samples) noexcept { stretch_ = samples; }
+  // The sensor moved here: the piece is of no use, those before it are.
+  void moved() noexcept;
   // Number of samples behind the ratio.
   [[nodiscard]] double samples() const noexcept { return samples_ + recalled_samples_; }
 
@@ -56,8 +57,10 @@ class Walk {
   };
   using Octaves = std::array<Allan, kMaxAxes>;
 
-  void break_off() noexcept;
+  // How the piece compares with the others: 1 if an octave is louder beyond chance, -1 if one is quieter and none louder.
+  [[nodiscard]] int against_others() const noexcept;
   void add(std::size_t axis, double rate) noexcept;
+  static void merge(const Octaves& more, double kept, Octaves& into) noexcept;
   [[nodiscard]] std::optional<Found> judge() noexcept;
   // R of an axis if its noise is white plus this walk from octave `first` on; 0 if not, NaN if there are no
   // data.
@@ -69,11 +72,10 @@ class Walk {
   [[nodiscard]] static std::size_t likeliest(const Octaves& of, double nearly) noexcept;
 
   std::array<std::array<Block, kOctaves>, kMaxAxes> blocks_{};
-  Octaves lately_{}, all_{};
-  double stretch_, in_stretch_ = 0.0, samples_ = 0.0;
+  Octaves piece_{}, lately_{}, all_{};
+  double stretch_, of_piece_, in_piece_ = 0.0, in_stretch_ = 0.0, samples_ = 0.0;
   double ratio_ = kMostRatio;
   double recalled_samples_ = 0.0;  // samples of the recalled ratio_; 0: learned by this run
-  bool learn_ = true;
 };
 
 }  // namespace ifog

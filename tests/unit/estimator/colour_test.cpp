@@ -135,7 +135,7 @@ TEST(Walk, TakesNoMotionForNoise) {
     test::Noise normal(7);
     Walk learner;
     for (int i = 0; i < 100'000; ++i)
-      ASSERT_FALSE(learner.take({motions[m](i, normal())}, 1, true)) << m << ", sample " << i;
+      ASSERT_FALSE(learner.take({motions[m](i, normal())}, 1)) << m << ", sample " << i;
   }
 }
 
@@ -151,7 +151,7 @@ TEST(Walk, RecallsUntilItIsContradicted) {
     const double rate = normal();
     walked += 1e-2 * normal();
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto news = walks[k].take({k == 2 ? rate + walked : rate}, 1, true);
+      const auto news = walks[k].take({k == 2 ? rate + walked : rate}, 1);
       if (news) found[k] = news->ratio;
     }
   }

@@ -89,7 +89,7 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
         rate[a] = capture.rate_radps[a][i];
         if (std::isfinite(rate[a])) valid |= 1U << a;
       }
-      const std::optional<Walk::Found> found = walk.take(rate, valid, true);
+      const std::optional<Walk::Found> found = walk.take(rate, valid);
       if (!found) continue;
       const double mean = std::accumulate(found->noise.begin(), found->noise.end(), 0.0) /
                           static_cast<double>(capture.axes.size());

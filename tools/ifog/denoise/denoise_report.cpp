@@ -179,7 +179,7 @@ void tell_denoised(const DenoiseOptions& options, const DenoisedRows& rows, cons
         result.noise_known ? "these rows are before the noise is known"
         : static_cast<double>(result.counts.samples) < Walk::kStretch
             ? "4096 samples at rest are needed to learn the noise"
-            : "no 4096 samples, in runs of 128 and more, are white (dither, lines, drift, motion)");
+            : "rests of 512 and more samples, 4096 in all, are not white (dither, lines, drift, motion)");
   tell_unusable(options.capture, rows, result);
   tell_not_as_published(options, rows, result);
   say("{}: {} samples at {:g} Hz, {}\n", options.capture, rows.written(), result.sample_rate_hz,
