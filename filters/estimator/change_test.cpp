@@ -18,7 +18,7 @@ constexpr double kShakingVariance = 4.0;
 
 // Evidence from the sizes of the errors alone, with their effective number from the fourth moment.
 double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
-  return 0.5 * c.rest[a] * c.rest[a] / std::max(c.rest2[a], 1e-9) *
+  return 0.5 * std::max(1.0, 1.0 / c.colour) * c.rest[a] * c.rest[a] / std::max(c.rest2[a], 1e-9) *
          logarithm((4.0 + c.rest[a]) / (4.0 + c.tracker[a]));
 }
 
@@ -34,7 +34,7 @@ void ChangeTest::begin() noexcept {
 
 // Prior variance of an offset that raises R to kShakingVariance R: m / n of R, n the worth of a sum over the
 // horizon. A sum of normalised square z^2 has the likelihood ratio exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
-ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
+ChangeTest::ChangeTest(const Trackers& trackers, const std::function<double(double)>& colour) {
   forget_angle();
   for (std::size_t j = 0; j < Trackers::kMost; ++j) {
     const double h = trackers.horizon(j), m = (kShakingVariance - 1.0) * h * h / (2.0 * h - 1.0);
@@ -42,6 +42,7 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
     contest_[j].spread = 0.5 * logarithm(m + 1.0);
     contest_[j].keep = 1.0 - 1.0 / h;
     contest_[j].worth = 1.0 / (2.0 * h - 1.0);
+    contest_[j].colour = colour(contest_[j].keep);
   }
 }
 
@@ -71,10 +72,13 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * c.weight + now.mask;
   // Effective number of innovations in the sum: its variance / R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
-  // Correlated neighbours count once; the limit is the rarity of an outlier.
-  const Lanes alike = colour_of_sum(now.decay, keep), share = now.mask / alike;
-  const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
-                                (common.log_rest - g.log_factor) * share);
+  // Correlated neighbours count once, those that cancel each other, as of a dither, several times; the limit is the rarity
+  // of an outlier.
+  const Lanes alike = c.colour * colour_of_sum(now.decay, keep), share = now.mask / alike.max(1.0);
+  const double times = std::max(1.0, 1.0 / c.colour);
+  const Lanes evidence = 0.5 * times *
+                         ((common.apart * share).min(common.cap) - (mine * share).min(common.cap) +
+                          (common.log_rest - g.log_factor) * share);
   expect(c, h, c.shrinks * c.sum.square() / (n * alike * common.second) - c.spread, now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
@@ -87,9 +91,13 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
                                             double lag) noexcept {
   const Lanes capped = now.surprise.min(2.0 * rarity);
   const double most = std::sqrt(2.0 * rarity);
-  const Common common{(now.innovation * now.inverse.sqrt()).max(-most).min(most),
-                      now.surprise.min(kFarSquare), second_.max(1.0), 2.0 * rarity,
-                      logarithm(now.rest_factor)};
+  const Lanes apart = now.apart * now.apart * now.inverse * (1.0 / now.apart_factor);
+  const Common common{(now.apart * now.inverse.sqrt()).max(-most).min(most),
+                      apart,
+                      apart.min(kFarSquare),
+                      second_.max(1.0),
+                      2.0 * rarity,
+                      logarithm(now.apart_factor)};
   age_ += 1.0;
   change_variance_.setZero();
   suspected_ = false;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 
 #include "filters/estimator/sample.h"
@@ -17,7 +18,8 @@ namespace ifog {
 
 class ChangeTest {
  public:
-  explicit ChangeTest(const Trackers& trackers) noexcept;
+  // colour: of the state model, for sums whose memory keeps a share; RestFilter::colour_of_sum().
+  ChangeTest(const Trackers& trackers, const std::function<double(double)>& colour);
 
   // Index that means "no tracker predicts; the measurements exceed the known noise".
   static constexpr std::size_t kShaking = Trackers::kMost;
@@ -41,11 +43,12 @@ class ChangeTest {
     Lanes times = Lanes::Zero();         // time in which a change was likely to have begun
     double shrinks = 0.0, spread = 0.0;  // of an offset's likelihood
     double keep = 0.0, worth = 0.0;      // 1 - 1 / h and 1 / (2 h - 1) for horizon h
+    double colour = 1.0;  // variance of the sum because of the model's colour / that of white noise
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    // Innovations clipped and squared; their variance relative to R.
-    Lanes clipped, squares, second;
+    // Differences from the filter at rest clipped, squared, squared and limited; the innovations' variance relative to R.
+    Lanes clipped, apart, squares, second;
     double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common) noexcept;

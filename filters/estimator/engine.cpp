@@ -27,12 +27,13 @@ Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::uni
       period_s_(period_s),
       rest_(std::move(rest)),
       noise_(settings, known, axes_, period_s, rest_->colour_variance()),
-      follow_(axes_, period_s, follows_) {}
+      begins_(axes_, period_s, follows_, *rest_),
+      follow_(begins_) {}
 
 void Engine::restart() noexcept {
   rest_->restart();
   const Lanes owed = follow_.ledger.owed();
-  follow_ = Follower(axes_, period_s_, follows_);
+  follow_ = begins_;
   if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
   noise_.gap();
   started_ = 0;
@@ -140,6 +141,9 @@ void Engine::weigh(Step& s) noexcept {
   const Lanes covered = to_lanes(s.in.covered_s);
   m.covered_s = (covered > 0.0).select(covered, s.dt_s);
   m.surprise = m.innovation * m.innovation * m.inverse * (1.0 / m.rest_factor);
+  const RestFilter::Reading clean = rest_->without_colour();
+  m.apart = m.mask * (m.rate - clean.value);
+  m.apart_factor = 1.0 + clean.variance / (noise_.mean_known() * s.noise_scale);
   s.out.innovation_radps = to_axes(m.innovation);
 }
 

@@ -44,8 +44,11 @@ class Grades {
 // The two estimates of the rate (trackers and filter at rest) and their state.
 class Follower {
  public:
-  Follower(std::size_t axes, double period_s, bool begins_moving) noexcept
-      : trackers(axes), change(trackers), ledger(period_s), moving(begins_moving) {}
+  Follower(std::size_t axes, double period_s, bool begins_moving, const RestFilter& rest)
+      : trackers(axes),
+        change(trackers, [&](double keep) { return rest.colour_of_sum(keep, period_s); }),
+        ledger(period_s),
+        moving(begins_moving) {}
 
   // Lag of the filter at rest, samples; at most the number of samples since it was reset.
   [[nodiscard]] double lag() const noexcept {
@@ -124,7 +127,7 @@ class Engine {
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
   SensorNoise noise_;
-  Follower follow_;
+  Follower begins_, follow_;  // at the start, and now
   Unmeasured unmeasured_;
   Grades grades_;
   EstimatorHealth health_;

@@ -50,13 +50,26 @@ RestFilter::RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> 
             (model->colour().diagonal().array() == 0.0).cast<double>(),
             process_noise * model->stationary(),
             process_noise * model->colour(),
-            model->rate() == model->measurement()};
+            model->rate() == model->measurement(),
+            measurement_noise};
   model_.clean = model_.h.cwiseProduct(model_.kept);
   model_.start.diagonal() += kDiffuse * measurement_noise * model->start();
   model_.form = std::move(model);
   transition_.resize(n, n);
   driving_.resize(n, n);
   restart();
+}
+
+double RestFilter::colour_of_sum(double keep, double period_s) const {
+  if (model_.rate_alone) return 1.0;
+  const Eigen::Index n = model_.states;
+  Eigen::MatrixXd transition(n, n), driving(n, n);
+  model_.form->discretise(period_s, transition, driving);
+  transition *= keep;
+  const Eigen::VectorXd shared = model_.colour * model_.h;
+  const Eigen::MatrixXd ahead = Eigen::MatrixXd::Identity(n, n) - transition;
+  const double later = model_.h.dot(ahead.partialPivLu().solve(transition * shared));
+  return 1.0 + 2.0 * later / (model_.white + model_.h.dot(shared));
 }
 
 void RestFilter::restart() noexcept {

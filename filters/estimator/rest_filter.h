@@ -67,6 +67,9 @@ class RestFilter {
   [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   // Variance of the model's coloured noise, (rad/s)^2.
   [[nodiscard]] double colour_variance() const noexcept { return model_.h.dot(model_.colour * model_.h); }
+  // Variance of a sum of measurements at rest whose memory keeps the share `keep` from sample to sample, relative to that
+  // of white noise: 1 + 2 sum keep^k rho_k, with the correlation rho of the model's noise.
+  [[nodiscard]] double colour_of_sum(double keep, double period_s) const;
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
@@ -79,6 +82,7 @@ class RestFilter {
     FewStatesVector clean, kept;    // h without the colour; 0 for the colour's states, else 1
     FewStatesMatrix start, colour;  // covariance at the start, and of the colour in steady state
     bool rate_alone;
+    double white;  // R of a measurement without the colour, (rad/s)^2
   };
   using Core = KalmanCore<Eigen::Dynamic>;
   [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }

@@ -47,8 +47,11 @@ struct Sample {
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle error of the filter at rest before this sample
   double rest_factor = 1.0;         // variance of the filter's innovations / R
-  Lanes decay = Lanes::Ones();      // Noise::decay(); 1 if the state model has the colour
-  double louder = 1.0;              // variance that noise may have for a while / the usual one
+  // The same without the model's colour, as trackers predict: it would absorb a motion.
+  Lanes apart = Lanes::Zero();
+  double apart_factor = 1.0;
+  Lanes decay = Lanes::Ones();  // Noise::decay(); 1 if the state model has the colour
+  double louder = 1.0;          // variance that noise may have for a while / the usual one
 };
 
 // Variance of a sum with fading memory, relative to that of white noise, if neighbours' correlation is lost by the share
