@@ -243,6 +243,7 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     if (!data_.grid.dwells) say(unlike_reference_in_words(records_, errors_, data_.grid.sample_s));
+    say(far_zeros_in_words(result_));
     say(unexplained_despite_claims(result_, records_.size()));
     // With a held-out part, judge() checks it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())

@@ -61,6 +61,26 @@ std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t c
                                : ". The coefficients are compared between the captures given");
 }
 
+std::string far_zeros_in_words(const Diagnosis& diagnosis) {
+  if (!diagnosis.bias) return "";
+  std::string list;
+  for (const ChannelRange& range : diagnosis.ranges) {
+    const double zero = reference_of(range.channel);
+    const bool counts_from_it = std::ranges::any_of(diagnosis.effects, [&](const FoundEffect& found) {
+      const Form form = form_named(found.effect.form).value_or(Form::kLine);
+      return (found.effect.channel == range.channel || found.effect.with_channel == range.channel) &&
+             (power_of(form) > 0 || form == Form::kLagged || form == Form::kProduct);
+    });
+    if (!counts_from_it || is_reference_rate(range.channel) || (range.low <= zero && zero <= range.high))
+      continue;
+    list += (list.empty() ? "" : " and ") +
+            formatted("%s = %g (here %.4g to %.4g)", range.channel.c_str(), zero, range.low, range.high);
+  }
+  return list.empty() ? ""
+                      : "bias and scale factor are those at " + list +
+                            ": with the terms of that channel they are right here, alone they are not";
+}
+
 void refuse_other_unit(const Diagnosis& diagnosis) {
   constexpr double kNear = 0.1;
   for (const FoundEffect& found : diagnosis.effects) {

@@ -24,6 +24,10 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 // or no effect uses a channel. captures: number diagnosed together.
 std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures);
 
+// Names the values of channels for which bias and scale factor are given although the captures are far from them. Empty
+// without a reference rate, or if every capture reaches them.
+std::string far_zeros_in_words(const Diagnosis& diagnosis);
+
 // Throws std::invalid_argument if the rate is as many times the reference as another sign or unit makes it.
 void refuse_other_unit(const Diagnosis& diagnosis);
 

@@ -145,6 +145,9 @@ TEST(Laws, AScaleFactorIsRightAtASupplyNobodyKnows) {
   const Diagnosis found = diagnose({make(6, 3e-7, 0.0, true, law).record()}, {});
   EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
   EXPECT_LT(left_of(found, make(7, 0.0, 0.0, true, law)), 0.2);
+  EXPECT_TRUE(std::ranges::any_of(found.remarks, [](const std::string& said) {
+    return test::has(said, "bias and scale factor are those at supply_V = 12 (here 12.1 to 12.5)");
+  }));
 }
 
 TEST(Laws, AnAnswerThroughTheTemperatureNeedsNoEffectOfItsOwnFirst) {
