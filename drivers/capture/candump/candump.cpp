@@ -2,7 +2,6 @@
 #include "drivers/capture/candump/candump.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include "drivers/capture/times/date_time.h"
@@ -38,9 +37,9 @@ bool parse_seconds(TextCursor& in, std::int64_t& time_ns, std::size_t& second_di
 bool parse_time(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   if (!in.literal('(')) return false;
   if (!in.has(4, '-')) return parse_seconds(in, time_ns, second_digits) && in.literal(')');
-  std::array<char, kLongestDate> digits{};
-  TextCursor date(date_in_digits(in.until(')'), digits));
-  if (!parse_seconds(date, time_ns, second_digits) || !date.done()) return false;
+  const auto date = date_time(in.until(')'));
+  if (!date || date->decimals > 9 || date->value < 0) return false;
+  time_ns = static_cast<std::int64_t>(date->with(9));
   second_digits = kEpochDigits;
   return in.literal(')');
 }
