@@ -36,16 +36,18 @@ class CsvRows {
         layout_(layout),
         sink_(sink),
         has_lines_(rows == RowsAre::lines),
-        file_(file) {}
+        file_(file) {
+    notes_.path = path;
+  }
 
   RowNotes read() {
     in_order(begin());
     tell_damaged();
-    if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
+    if (checks_->rows() == 0) notes_.refuse(0, "no rows after the header");
     if (so_far_.untimed > 0)
-      notes_.notices.push_back(path_ + ": " + std::to_string(so_far_.untimed) + " rows without " +
-                               in_quotes(header_.cells[header_.time_place]) +
-                               " are of another sensor and dropped");
+      notes_.notice(0, std::to_string(so_far_.untimed) + " rows without " +
+                           in_quotes(header_.cells[header_.time_place]) +
+                           " are of another sensor and dropped");
     checks_->finish(impossible_);
     return std::move(notes_);
   }
@@ -67,7 +69,7 @@ class CsvRows {
       if (!piece.starts_with('#')) plain += piece.size();
     }
     const std::string other = foreign_text(std::string_view(head).substr(0, InputFile::kHead));
-    if (!other.empty()) fail_at(path_, 0, other);
+    if (!other.empty()) notes_.refuse(0, other);
     if (head.starts_with("\xEF\xBB\xBF")) head.erase(0, 3);  // byte-order mark
     return head;
   }
@@ -81,11 +83,11 @@ class CsvRows {
     Lines lines(text);
     for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
     so_far_.lines = has_lines_ ? lines.number() : 0;
-    notes_.comments = std::move(header_.comments);
+    for (const std::string& comment : header_.sample.comments) notes_.comments += comment + '\n';
     notes_.header_line = so_far_.lines;
-    notes_.notices = std::move(header_.notices);
+    for (const std::string& notice : header_.notices) notes_.notice(0, notice);
     impossible_.resize(header_.columns.size());
-    checks_.emplace(path_, header_.layout, header_.columns, sink_, notes_);
+    checks_.emplace(header_.layout, header_.columns, sink_, notes_);
     std::vector<std::string> names;
     for (const FileColumn& column : header_.columns) names.push_back(column.name);
     sink_.begin(names);
@@ -156,8 +158,8 @@ class CsvRows {
     for (const auto& [found, few] :
          {std::pair{&damaged_, rows >= kRowsAFault * damaged_.count}, {&unended_, rows > 0}}) {
       if (found->count == 0) continue;
-      if (!few) fail_at(path_, found->line, found->first);
-      notes_.faults.push_back(found->dropped(path_, "line"));
+      if (!few) notes_.refuse(found->line, found->first);
+      notes_.dropped(*found, "line");
     }
   }
 
@@ -190,8 +192,7 @@ RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) 
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); };
   RowNotes notes = CsvRows(read, kTextPiece, file.path(), layout, sink, RowsAre::lines, &file).read();
   if (file.ends_early())
-    notes.faults.push_back(file.path() +
-                           ": the gzip stream ends early (truncated file); the rows until there are read");
+    notes.fault(0, "the gzip stream ends early (truncated file); the rows until there are read");
   return notes;
 }
 
