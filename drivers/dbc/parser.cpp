@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "drivers/dbc/database.h"
-#include "drivers/dbc/keywords.h"
 #include "drivers/dbc/scanner.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "drivers/dbc/keywords.h"
 #include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 
@@ -20,7 +19,26 @@ bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 // Longer strings count as unclosed, so the search is bounded.
 constexpr std::size_t kLongestString = 65536;
 
+// keywords: with a blank around each.
+bool is_among(std::string_view keyword, std::string_view keywords) {
+  return keywords.find(" " + std::string(keyword) + " ") != std::string_view::npos;
+}
+
+// True for keywords that occur only at the start of a statement.
+bool stands_first_only(std::string_view keyword) {
+  return is_among(
+      keyword,
+      " CM_ BA_ BA_DEF_ BA_DEF_DEF_ BA_DEF_REL_ BA_REL_ BA_DEF_DEF_REL_ BA_DEF_SGTYPE_ BA_SGTYPE_ "
+      "BA_DEF_SGTYPE_REL_ VAL_ VAL_TABLE_ SG_MUL_VAL_ SIG_GROUP_ SIG_VALTYPE_ SIG_TYPE_REF_ "
+      "SIGTYPE_VALTYPE_ SGTYPE_ SGTYPE_VAL_ BO_TX_BU_ EV_DATA_ ENVVAR_DATA_ CAT_DEF_ ");
+}
+
 }  // namespace
+
+bool carries_no_layout(std::string_view keyword) {
+  return (stands_first_only(keyword) && !is_among(keyword, " BA_ SG_MUL_VAL_ SIG_VALTYPE_ ")) ||
+         is_among(keyword, " EV_ CAT_ FILTER BU_SG_REL_ BU_EV_REL_ BU_BO_REL_ NS_DESC_ ");
+}
 
 void Scanner::step() {
   if (text_[at_] == '\n') ++line_;

@@ -10,6 +10,9 @@
 
 namespace ifog::dbc {
 
+// True for keywords of statements that contain neither layout nor names of signals.
+[[nodiscard]] bool carries_no_layout(std::string_view keyword);
+
 // The text found at a line, and what was expected.
 struct ScanError : std::runtime_error {
   ScanError(std::size_t at_line, const std::string& what) : std::runtime_error(what), line(at_line) {}

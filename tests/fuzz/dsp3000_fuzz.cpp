@@ -2,7 +2,7 @@
 // Any bytes: no crash, every byte counted, and a value that is read is equal after writing and reading.
 #include <cstdlib>
 
-#include "drivers/plugins/dsp3000/line_finder.h"
+#include "drivers/plugins/dsp3000/line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace ifog::dsp3000;

@@ -14,7 +14,6 @@
 #include <string>
 
 #include "drivers/plugins/dsp3000/line.h"
-#include "drivers/plugins/dsp3000/line_finder.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of frames in either byte order: reading and writing, numbers limited to a field, time stamps, and
-// environment channels, which hold their values between frames; what a device of three axes describes.
+// Fields of frames in either byte order: reading and writing, numbers limited to a field, checksums, time stamps,
+// and environment channels, which hold their values between frames; what a device of three axes describes.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <boost/crc.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -73,6 +74,14 @@ class FieldWriter {
  private:
   std::span<std::uint8_t> room_;
 };
+
+// CRC-32/MPEG-2 of the bytes and of zeros that make them a multiple of `block`.
+[[nodiscard]] inline std::uint32_t crc32_mpeg2(std::span<const std::uint8_t> bytes, std::size_t block = 1) {
+  boost::crc_optimal<32, 0x04C11DB7U, 0xFFFFFFFFU, 0U, false, false> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  for (std::size_t n = bytes.size(); n % block != 0; ++n) crc.process_byte(0);
+  return crc.checksum();
+}
 
 // Nearest count in two's complement of `bits`. Throws std::invalid_argument if out of range.
 inline std::int32_t count_of(double value, unsigned bits, const std::string& what) {

@@ -13,7 +13,6 @@
 
 #include "drivers/plugins/framing/fields.h"
 #include "drivers/plugins/kvh1750/frame.h"
-#include "drivers/plugins/kvh1750/frame_finder.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
@@ -124,7 +123,7 @@ class Driver {
   void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
               void* sink) noexcept {
     finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
-      const Frame frame = unpack_found(found);
+      const Frame frame = unpack(found);
       if (set_up_.format && frame.format != *set_up_.format) {
         ++other_format_;
         return;
@@ -224,7 +223,7 @@ class Driver {
   }
 
   SetUp set_up_;
-  FrameFinder finder_;
+  framing::FrameFinder<Protocol> finder_;
   framing::Stamp stamp_{1000};
   std::uint64_t other_format_ = 0;
   framing::Channels channels_;

@@ -2,7 +2,7 @@
 // The frame layout against bytes that our encoder did not make: the standard's check value and frames packed
 // by hand from the maker's description, the CRC by the bit-serial definition.
 #include "drivers/host/driver_instance.h"
-#include "drivers/plugins/kvh1750/frame_finder.h"
+#include "drivers/plugins/kvh1750/frame.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
 #include "tests/unit/test.h"
