@@ -52,12 +52,6 @@ std::uint64_t number_of(std::string_view name) {
   return made_here && number < kMostFiles ? number : 0;
 }
 
-FlightLoss load_of(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery) {
-  const bool came =
-      head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
-  return came ? FlightLoss{begins_delivery ? 1U : 0U, payload.size()} : FlightLoss{};
-}
-
 }  // namespace
 
 FlightArchive::FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header)
@@ -71,7 +65,7 @@ void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_
                         bool begins_delivery) {
   append_entry(waiting_.bytes, head, payload);
   ++waiting_.entries;
-  waiting_.load += load_of(head, payload, begins_delivery);
+  if (head.is_received()) waiting_.load += {begins_delivery ? 1U : 0U, payload.size()};
 }
 
 std::string FlightArchive::complaint() const {
@@ -79,11 +73,6 @@ std::string FlightArchive::complaint() const {
   const std::string words = std::generic_category().message(error_);
   const bool full = error_ == ENOSPC || error_ == EDQUOT || error_ == EFBIG;
   return full ? words : words + " (expected a folder that can be written)";
-}
-
-void FlightArchive::set_header(FlightHeader header) {
-  // The present file keeps its checksums until it ends.
-  next_header_ = std::move(header);
 }
 
 // Reads the folder and closes files left open by a killed recorder.

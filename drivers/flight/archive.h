@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/flight/block.h"
@@ -56,7 +57,7 @@ class FlightArchive {
   // Writes due data, starts and ends files, removes old ones. flush: all waiting data are due.
   void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
   // From the next block on; ends the present file.
-  void set_header(FlightHeader header);
+  void set_header(FlightHeader header) { next_header_ = std::move(header); }
   // Writes waiting data and ends the file. Returns the number of entries lost because the disk rejects them.
   std::uint64_t close(std::int64_t now_ns, std::int64_t wall_ns);
 
