@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "drivers/capture/checks/row_clock.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/table_form.h"
 
 namespace ifog {

@@ -2,7 +2,7 @@
 #include <sys/resource.h>
 #include <zlib.h>
 
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/input_file.h"
 #include "tests/unit/capture/read_capture.h"
