@@ -216,17 +216,6 @@ TEST(Measurable, ALetterIsNoUnit) {
   EXPECT_FALSE(measurable("x_accel_g").holds(1e7));
 }
 
-// A thermometer that says -999 every other row tells nothing; the rate does.
-TEST(Measurable, AChannelOfThemIsMissingAndNoReasonToRefuse) {
-  std::string text = "time_s,rate_radps,temperature_degC\n";
-  for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 2 == 1 ? ",0,-999\n" : ",0,25\n");
-  const Capture read = parse_capture(text, "a.csv");
-  EXPECT_TRUE(std::isnan(read.channels[0].values[1]));
-  EXPECT_EQ(read.channels[0].values[2], 25.0);
-  ASSERT_EQ(read.faults.size(), 1U);
-  EXPECT_TRUE(test::has(read.faults[0], "50 such cells treated as missing"));
-}
-
 TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
   std::string text = "time_s,rate_radps\n";
   for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 20 == 7 ? ",1e30\n" : ",0\n");
