@@ -60,10 +60,6 @@ void Scanner::skip_line() {
   while (at_ < text_.size() && text_[at_] != '\n') ++at_;
 }
 
-void Scanner::skip_digits() {
-  while (at_ < text_.size() && digit(text_[at_])) ++at_;
-}
-
 bool Scanner::at_end() {
   skip_space();
   return at_ == text_.size();
@@ -156,11 +152,6 @@ bool Scanner::next_is(char character) const {
   return ahead.accept(character);
 }
 
-bool Scanner::next_is_digit() const {
-  Scanner ahead = *this;
-  return !ahead.at_end() && digit(ahead.text_[ahead.at_]);
-}
-
 bool Scanner::accept(char character) {
   skip_space();
   if (at_ == text_.size() || text_[at_] != character) return false;
@@ -185,9 +176,10 @@ bool Scanner::begins_statement() const {
   if (keyword.empty()) return false;
   if (stands_first_only(keyword)) return true;
   ahead.at_ += keyword.size();
-  const bool numbered = ahead.next_is_digit();
-  if (numbered) ahead.skip_space();
-  if (numbered) ahead.skip_digits();
+  ahead.skip_space();
+  const std::size_t number = ahead.at_;
+  while (ahead.at_ < text_.size() && digit(text_[ahead.at_])) ++ahead.at_;
+  const bool numbered = ahead.at_ > number;
   if (keyword == "VERSION") return ahead.next_is('"');
   if (keyword == "NS_" || keyword == "BS_" || keyword == "BU_") return ahead.next_is(':');
   // Otherwise it is BO_ 12 "text", BO_ 12 34 or, in declarations of attributes, BO_ "name".

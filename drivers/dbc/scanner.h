@@ -34,7 +34,6 @@ class Scanner {
   void sign(char character);                         // exactly this character
   [[nodiscard]] bool accept(char character);         // consumes it if it is next
   [[nodiscard]] bool next_is(char character) const;  // after blanks
-  [[nodiscard]] bool next_is_digit() const;
   char one_of(const char* characters);
 
   // True if a statement starts here. Keywords occur elsewhere too: "CM_ BO_ 12 …" is about a message.
@@ -51,7 +50,6 @@ class Scanner {
 
  private:
   void skip_space();
-  void skip_digits();
   void step();
   std::string_view text_;
   std::size_t at_ = 0;

@@ -11,7 +11,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "drivers/units/turn.h"
 
 namespace ifog {

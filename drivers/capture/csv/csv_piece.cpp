@@ -74,7 +74,7 @@ struct RowTime {
 // Appends rows to the columns of a piece.
 class Rows {
  public:
-  // most: expected number of rows. Reused columns keep their memory.
+  // most: expected number of rows.
   Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps, std::size_t most)
       : piece_(piece),
         header_(header),
@@ -259,11 +259,12 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
   return std::nullopt;
 }
 
-CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
-                         RowBlock used) {
-  CsvPiece piece;
-  piece.rows = std::move(used);
+void parse(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps) {
+  CsvPiece fresh;
+  fresh.text = std::move(piece.text), fresh.rows = std::move(piece.rows);
+  piece = std::move(fresh);
   piece.rows.origin = stamps.origin();
+  const std::string_view text = piece.text;
   // Estimates the number of rows from the first row's length, at least one byte per column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   Rows rows(piece, header, stamps, text.size() / length + text.size() / length / 16 + 1);
@@ -285,7 +286,6 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
     }
   }
   piece.lines = lines.number();
-  return piece;
 }
 
 }  // namespace ifog

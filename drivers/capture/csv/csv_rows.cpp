@@ -53,11 +53,8 @@ class CsvRows {
   }
 
  private:
-  // Its memory is reused, because new pages cost as much as reading.
-  struct Piece {
-    std::string text;
-    RowBlock rows;
-    std::future<CsvPiece> parsed;
+  struct Piece : CsvPiece {
+    std::future<void> parsed;
   };
 
   // Beginning of the text, independent of how it is read.
@@ -108,15 +105,15 @@ class CsvRows {
       else if (!form_.is_plain())
         piece.text = form_.rows_of(piece.text);
       if (!stamps_) stamps_ = stamps_from(piece.text, header_);  // common origin of all pieces
-      parse(piece);
+      begin_to_parse(piece);
       ++begun;
     }
     while (done < begun) deliver(ring[done++ % ring.size()]);
   }
 
-  void parse(Piece& piece) {
+  void begin_to_parse(Piece& piece) {
     const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())] {
-      return parse_csv_piece(piece.text, header_, stamps, std::move(piece.rows));
+      parse(piece, header_, stamps);
     };
     const bool worth = piece.text.size() >= kWorthAThread;
     try {
@@ -127,21 +124,20 @@ class CsvRows {
   }
 
   void deliver(Piece& piece) {
-    CsvPiece parsed = piece.parsed.get();
-    if (parsed.too_long.count > 0)
-      refuse_long_line(path_, so_far_.lines + parsed.too_long.line, parsed.too_long.first);
-    notes_.comments += parsed.comments;
+    piece.parsed.get();
+    if (piece.too_long.count > 0)
+      refuse_long_line(path_, so_far_.lines + piece.too_long.line, piece.too_long.first);
+    notes_.comments += piece.comments;
     for (std::size_t c = 0; c < impossible_.size(); ++c)
-      impossible_[c].append(parsed.impossible[c], so_far_.lines);
-    damaged_.append(parsed.damaged, so_far_.lines);
-    unended_.append(parsed.unended, so_far_.lines);
-    piece.rows = std::move(parsed.rows);
+      impossible_[c].append(piece.impossible[c], so_far_.lines);
+    damaged_.append(piece.damaged, so_far_.lines);
+    unended_.append(piece.unended, so_far_.lines);
     RowBlock& rows = piece.rows;
     for (std::size_t& line : rows.lines) line += so_far_.lines;
-    so_far_.lines += parsed.lines;
-    so_far_.untimed += parsed.untimed;
-    const std::size_t places = std::exchange(so_far_.places, so_far_.places + parsed.places);
-    if (file_ != nullptr) file_->were_rows(parsed.row_bytes);
+    so_far_.lines += piece.lines;
+    so_far_.untimed += piece.untimed;
+    const std::size_t places = std::exchange(so_far_.places, so_far_.places + piece.places);
+    if (file_ != nullptr) file_->were_rows(piece.row_bytes);
     // limit after which the search ends
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
