@@ -12,7 +12,7 @@ namespace {
 // Frames packed by hand from the tables of the maker's manual; the CRCs at their ends come from long division
 // done outside this program.
 
-std::vector<std::uint8_t> hex(std::string_view text) { return ifog::hex_bytes(text); }
+std::vector<std::uint8_t> hex(std::string_view text) { return ifog::hex_bytes(std::string(text)); }
 
 //                                 header    gyro 1, -2, 0.5             accelerometer 0, 1, -1      st sq 25
 //                                 CRC
