@@ -9,7 +9,6 @@
 #include "daemon/config/lcm_field_name.h"
 #include "daemon/config/table_reader.h"
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/measurable.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
 

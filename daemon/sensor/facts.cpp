@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "filters/chain/plausibility.h"
 
 namespace ifog {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/times/row_sink.h"
 #include "drivers/capture/times/sample_times.h"
 #include "drivers/ifog/driver.h"
@@ -19,7 +19,7 @@ namespace ifog {
 // Times are from SampleTimes. As in the daemon, a rate at full scale or beyond the possible range becomes
 // NaN. A delta angle becomes a rate over its own sample period, also after a gap; an angle becomes a rate
 // over the time since the sample before, so the first one has none. NaN also for axes marked invalid and for
-// environment values that are not in the sample or impossible (measurable.h).
+// environment values that are not in the sample or impossible (Measurable).
 class CaptureBuilder {
  public:
   // The sink receives rows in blocks: rates by axis, then channels; must outlive this. outside: names of channels

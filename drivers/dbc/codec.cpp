@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -44,36 +43,6 @@ void pieces(const Signal& signal, Visit&& visit) noexcept {
   }
 }
 
-// IEEE 754 binary16: sign, 5 bits of exponent with bias 15, 10 of fraction.
-constexpr int kHalfFraction = 10;
-constexpr int kHalfBias = 15;
-constexpr std::uint32_t kHalfInfinity = 0x7C00;
-
-double half_value(std::uint64_t bits) noexcept {
-  const auto exponent = static_cast<int>(bits >> kHalfFraction & 0x1FU);
-  const auto fraction = static_cast<double>(bits & low_bits(kHalfFraction));
-  double magnitude = std::ldexp(fraction, 1 - kHalfBias - kHalfFraction);  // subnormal
-  if (exponent == 0x1F)
-    magnitude =
-        fraction == 0.0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
-  else if (exponent != 0)
-    magnitude = std::ldexp(fraction + 1024.0, exponent - kHalfBias - kHalfFraction);
-  return (bits & 0x8000U) != 0 ? -magnitude : magnitude;
-}
-
-// Rounded to nearest, ties to even; finite values above the largest half (65504) give infinity.
-std::uint64_t half_bits(double value) noexcept {
-  const std::uint64_t sign = std::signbit(value) ? 0x8000U : 0U;
-  const double magnitude = std::abs(value);
-  if (std::isnan(magnitude)) return sign | 0x7E00U;
-  if (magnitude >= 65520.0) return sign | kHalfInfinity;
-  const int exponent = magnitude == 0.0 ? 1 - kHalfBias : std::max(std::ilogb(magnitude), 1 - kHalfBias);
-  // In units of the last place; 2048 units carry into the exponent.
-  const double units = std::nearbyint(std::ldexp(magnitude, kHalfFraction - exponent));
-  const auto biased = static_cast<std::uint64_t>(exponent + kHalfBias - 1) << kHalfFraction;
-  return sign | (biased + static_cast<std::uint64_t>(units));
-}
-
 }  // namespace
 
 std::size_t bytes_needed(const Signal& signal) noexcept {
@@ -111,9 +80,6 @@ double physical(const Signal& signal, std::uint64_t bits) noexcept {
       raw = static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
       break;
     }
-    case ValueType::kHalf:
-      raw = half_value(bits);
-      break;
     case ValueType::kFloat:
       raw = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
       break;
@@ -131,11 +97,6 @@ std::uint64_t raw_of(const Signal& signal, double value) {
     throw std::invalid_argument("signal " + printable(signal.name) + " cannot hold " + std::to_string(value) +
                                 ", expected " + expected);
   };
-  if (signal.type == ValueType::kHalf) {
-    const std::uint64_t bits = half_bits(raw);
-    if (std::isfinite(raw) && (bits & 0x7FFFU) == kHalfInfinity) refuse("what a 16-bit float holds");
-    return bits;
-  }
   if (signal.type == ValueType::kFloat) {
     const auto narrow = static_cast<float>(raw);
     if (std::isfinite(raw) && !std::isfinite(narrow)) refuse("what a 32-bit float holds");

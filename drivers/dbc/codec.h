@@ -17,7 +17,7 @@ std::size_t bytes_needed(const Signal& signal) noexcept;
 std::uint64_t raw_bits(const Signal& signal, std::span<const std::uint8_t> data) noexcept;
 void set_raw_bits(const Signal& signal, std::uint64_t bits, std::span<std::uint8_t> data) noexcept;
 
-// raw · scale + offset; raw is signed, unsigned, or IEEE half, float or double.
+// raw · scale + offset; raw is signed, unsigned, or an IEEE float or double.
 double physical(const Signal& signal, std::uint64_t bits) noexcept;
 
 // Nearest raw value. Throws std::invalid_argument for NaN in an integer, or out of the signal's range.

@@ -24,9 +24,8 @@ enum class ByteOrder : std::uint8_t {
         // byte
 };
 
-// kHalf, kFloat, kDouble: IEEE 754 of 16, 32, 64 bits. SIG_VALTYPE_ has only types 1 (float) and 2 (double);
-// a 16-bit float is a half, as in other readers.
-enum class ValueType : std::uint8_t { kUnsigned, kSigned, kHalf, kFloat, kDouble };
+// kFloat, kDouble: IEEE 754 of 32 and 64 bits.
+enum class ValueType : std::uint8_t { kUnsigned, kSigned, kFloat, kDouble };
 
 inline constexpr bool is_integer(ValueType type) {
   return type == ValueType::kUnsigned || type == ValueType::kSigned;

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "drivers/dbc/database.h"
-#include "drivers/dbc/keywords.h"
 #include "drivers/dbc/scanner.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
@@ -47,7 +46,6 @@ class Parser {
   }
 
   void section_or_warning() {
-    const Scanner before = in_;
     try {
       section();
     } catch (const ScanError& error) {
@@ -56,14 +54,14 @@ class Parser {
         building_->refused = text;
       else if (named_ != nullptr)
         named_->refused = text;
-      else if (!known_section_ && !like_signal(before.rest_of_line()))
+      else if (costs_message_)
         unknown_message(text);
       in_.resume();
     }
     building_ = named_ = nullptr;
   }
 
-  // The unreadable statement may have been a BO_: later signals must not be added to the previous message.
+  // Instead of a message that cannot be read: later signals must not be added to the one before.
   void unknown_message(const std::string& why) {
     Message m;
     m.line = in_.line();
@@ -87,10 +85,9 @@ class Parser {
 
   void section() {
     const std::string_view keyword = in_.peek_word();
-    known_section_ = true;
-    if (keyword == "VERSION") {
-      (void)in_.word("VERSION");
-      (void)in_.string("the version in quotes");
+    costs_message_ = keyword == "BO_";
+    if (keyword == "VERSION" || keyword == "BS_" || keyword == "BU_") {
+      (void)in_.skip_statement();  // no ';' closes it
     } else if (keyword == "NS_") {
       (void)in_.word("NS_");
       in_.sign(':');
@@ -99,12 +96,6 @@ class Parser {
            !name.empty() && name != "BS_" && name != "BU_" && name != "BO_" && name != "VERSION";
            name = in_.peek_word())
         (void)in_.word("a keyword");
-    } else if (keyword == "BS_") {
-      bus_speed();
-    } else if (keyword == "BU_") {
-      (void)in_.word("BU_");
-      in_.sign(':');
-      while (!in_.peek_word().empty() && !in_.begins_statement()) (void)in_.word("a node");
     } else if (keyword == "BO_") {
       message();
     } else if (keyword == "SG_") {
@@ -119,7 +110,7 @@ class Parser {
       const std::size_t line = in_.line();
       if (!in_.skip_statement()) open_statement(line);
     } else {
-      known_section_ = false;
+      costs_message_ = !like_signal(in_.rest_of_line());
       in_.fail("a section of a DBC file (BO_, SG_, CM_, …)");
     }
   }
@@ -133,29 +124,14 @@ class Parser {
     open_statement(line);
   }
 
-  void bus_speed() {
-    (void)in_.word("BS_");
-    in_.sign(':');
-    while (in_.next_is_digit() || in_.next_is(':') || in_.next_is(','))
-      if (!in_.accept(':') && !in_.accept(',')) (void)in_.integer("a bus speed", UINT64_MAX);
-  }
-
   void message() {
     Message m;
     m.line = in_.line();
     (void)in_.word("BO_");
-    std::uint32_t sent = 0;
-    try {
-      sent = static_cast<std::uint32_t>(in_.integer("a message id", 0xFFFFFFFFU));
-      m.name = in_.word("the name of a message");
-      in_.sign(':');
-      m.length = static_cast<std::uint32_t>(in_.integer("the length of a message in bytes", 65535));
-    } catch (const ScanError& error) {
-      m.refused = warn(error.line, error.what());
-      add(std::move(m));
-      in_.resume();
-      return;
-    }
+    const auto sent = static_cast<std::uint32_t>(in_.integer("a message id", 0xFFFFFFFFU));
+    m.name = in_.word("the name of a message");
+    in_.sign(':');
+    m.length = static_cast<std::uint32_t>(in_.integer("the length of a message in bytes", 65535));
     if (!in_.peek_word().empty() && !in_.begins_statement())
       (void)in_.word("the node that sends the message");
     m.extended = (sent & kExtendedFlag) != 0;
@@ -272,16 +248,12 @@ class Parser {
     const std::uint64_t type = in_.integer("0 (integer), 1 (float) or 2 (double)", 2);
     end_statement(line);
     if (s == nullptr || type == 0 || !s->refused.empty()) return;
-    if (type == 1 && s->length == 16) {
-      s->type = ValueType::kHalf;
-      return;
-    }
     s->type = type == 1 ? ValueType::kFloat : ValueType::kDouble;
     const std::uint32_t bits = type == 1 ? 32 : 64;
     if (s->length != bits)
       refuse(*s, line,
              "signal " + printable(s->name) + " is a " + (type == 1 ? "float" : "double") + " of " +
-                 std::to_string(s->length) + " bits, expected " + (type == 1 ? "16 or 32" : "64"));
+                 std::to_string(s->length) + " bits, expected " + std::to_string(bits));
   }
 
   void selected_ranges() {
@@ -380,7 +352,7 @@ class Parser {
   Signal* building_ = nullptr;  // signal that an error makes doubtful: the one being parsed,
   Signal* named_ = nullptr;     // or the one named in the statement
   Signal dropped_;
-  bool known_section_ = false;
+  bool costs_message_ = false;  // an error here is of a line that may have begun a message
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "drivers/dbc/keywords.h"
 #include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 
@@ -20,7 +19,26 @@ bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 // Longer strings count as unclosed, so the search is bounded.
 constexpr std::size_t kLongestString = 65536;
 
+// keywords: with a blank around each.
+bool is_among(std::string_view keyword, std::string_view keywords) {
+  return keywords.find(" " + std::string(keyword) + " ") != std::string_view::npos;
+}
+
+// True for keywords that occur only at the start of a statement.
+bool stands_first_only(std::string_view keyword) {
+  return is_among(
+      keyword,
+      " CM_ BA_ BA_DEF_ BA_DEF_DEF_ BA_DEF_REL_ BA_REL_ BA_DEF_DEF_REL_ BA_DEF_SGTYPE_ BA_SGTYPE_ "
+      "BA_DEF_SGTYPE_REL_ VAL_ VAL_TABLE_ SG_MUL_VAL_ SIG_GROUP_ SIG_VALTYPE_ SIG_TYPE_REF_ "
+      "SIGTYPE_VALTYPE_ SGTYPE_ SGTYPE_VAL_ BO_TX_BU_ EV_DATA_ ENVVAR_DATA_ CAT_DEF_ ");
+}
+
 }  // namespace
+
+bool carries_no_layout(std::string_view keyword) {
+  return (stands_first_only(keyword) && !is_among(keyword, " BA_ SG_MUL_VAL_ SIG_VALTYPE_ ")) ||
+         is_among(keyword, " EV_ CAT_ FILTER BU_SG_REL_ BU_EV_REL_ BU_BO_REL_ NS_DESC_ ");
+}
 
 void Scanner::step() {
   if (text_[at_] == '\n') ++line_;
@@ -40,10 +58,6 @@ void Scanner::skip_space() {
 
 void Scanner::skip_line() {
   while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-}
-
-void Scanner::skip_digits() {
-  while (at_ < text_.size() && digit(text_[at_])) ++at_;
 }
 
 bool Scanner::at_end() {
@@ -138,11 +152,6 @@ bool Scanner::next_is(char character) const {
   return ahead.accept(character);
 }
 
-bool Scanner::next_is_digit() const {
-  Scanner ahead = *this;
-  return !ahead.at_end() && digit(ahead.text_[ahead.at_]);
-}
-
 bool Scanner::accept(char character) {
   skip_space();
   if (at_ == text_.size() || text_[at_] != character) return false;
@@ -167,9 +176,10 @@ bool Scanner::begins_statement() const {
   if (keyword.empty()) return false;
   if (stands_first_only(keyword)) return true;
   ahead.at_ += keyword.size();
-  const bool numbered = ahead.next_is_digit();
-  if (numbered) ahead.skip_space();
-  if (numbered) ahead.skip_digits();
+  ahead.skip_space();
+  const std::size_t number = ahead.at_;
+  while (ahead.at_ < text_.size() && digit(text_[ahead.at_])) ++ahead.at_;
+  const bool numbered = ahead.at_ > number;
   if (keyword == "VERSION") return ahead.next_is('"');
   if (keyword == "NS_" || keyword == "BS_" || keyword == "BU_") return ahead.next_is(':');
   // Otherwise it is BO_ 12 "text", BO_ 12 34 or, in declarations of attributes, BO_ "name".

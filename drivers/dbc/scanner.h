@@ -10,6 +10,9 @@
 
 namespace ifog::dbc {
 
+// True for keywords of statements that contain neither layout nor names of signals.
+[[nodiscard]] bool carries_no_layout(std::string_view keyword);
+
 // The text found at a line, and what was expected.
 struct ScanError : std::runtime_error {
   ScanError(std::size_t at_line, const std::string& what) : std::runtime_error(what), line(at_line) {}
@@ -31,7 +34,6 @@ class Scanner {
   void sign(char character);                         // exactly this character
   [[nodiscard]] bool accept(char character);         // consumes it if it is next
   [[nodiscard]] bool next_is(char character) const;  // after blanks
-  [[nodiscard]] bool next_is_digit() const;
   char one_of(const char* characters);
 
   // True if a statement starts here. Keywords occur elsewhere too: "CM_ BO_ 12 …" is about a message.
@@ -48,7 +50,6 @@ class Scanner {
 
  private:
   void skip_space();
-  void skip_digits();
   void step();
   std::string_view text_;
   std::size_t at_ = 0;

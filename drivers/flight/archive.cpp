@@ -52,12 +52,6 @@ std::uint64_t number_of(std::string_view name) {
   return made_here && number < kMostFiles ? number : 0;
 }
 
-FlightLoss load_of(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery) {
-  const bool came =
-      head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
-  return came ? FlightLoss{begins_delivery ? 1U : 0U, payload.size()} : FlightLoss{};
-}
-
 }  // namespace
 
 FlightArchive::FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header)
@@ -71,7 +65,7 @@ void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_
                         bool begins_delivery) {
   append_entry(waiting_.bytes, head, payload);
   ++waiting_.entries;
-  waiting_.load += load_of(head, payload, begins_delivery);
+  if (head.is_received()) waiting_.load += {begins_delivery ? 1U : 0U, payload.size()};
 }
 
 std::string FlightArchive::complaint() const {
@@ -81,13 +75,8 @@ std::string FlightArchive::complaint() const {
   return full ? words : words + " (expected a folder that can be written)";
 }
 
-void FlightArchive::set_header(FlightHeader header) {
-  // The present file keeps its checksums until it ends.
-  next_header_ = std::move(header);
-}
-
 // Reads the folder and closes files left open by a killed recorder.
-int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
+int FlightArchive::look() {
   std::vector<FlightFolder::File> files;
   if (const int error = folder_->list(files); error != 0) return error;
   // Known ages are kept, as the wall clock may have been set.
@@ -108,9 +97,9 @@ int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
     if (number == 0) continue;
     kept_.next_number = std::max(kept_.next_number, number + 1);
     const std::int64_t age_ns =
-        file.modified_ns < kClockIsSet_ns ? 0 : std::max<std::int64_t>(0, wall_ns - file.modified_ns);
+        file.modified_ns < kClockIsSet_ns ? 0 : std::max<std::int64_t>(0, wall_ns_ - file.modified_ns);
     const auto found = known.find(name);
-    const std::int64_t last_ns = found != known.end() ? found->second : now_ns - age_ns;
+    const std::int64_t last_ns = found != known.end() ? found->second : now_ns_ - age_ns;
     kept_.files.push_back({number, std::move(name), file.bytes, last_ns});
     kept_.bytes += file.bytes;
   }
@@ -133,9 +122,9 @@ int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) 
   return 0;
 }
 
-int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
+int FlightArchive::begin_file() {
   if (!kept_.known)
-    if (const int error = look(now_ns, wall_ns); error != 0) return error;
+    if (const int error = look(); error != 0) return error;
   if (next_header_) {
     next_header_->run = header_.run;
     header_ = *std::exchange(next_header_, std::nullopt);
@@ -143,15 +132,15 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   header_.file = random_number();
   header_.number = kept_.next_number;
   header_.began = began_ != 0 ? began_ : kept_.next_number;
-  header_.opened_ns = wall_ns;
-  file_.name = file_name(kept_.next_number, wall_ns);
+  header_.opened_ns = wall_ns_;
+  file_.name = file_name(kept_.next_number, wall_ns_);
   if (const int error = folder_->begin(file_.name + std::string(kOpen)); error != 0) {
     if (error == EEXIST) ++kept_.next_number;
     kept_.known = false;
     return error;
   }
   file_.bytes = file_.entries = 0;
-  file_.since_ns = now_ns;
+  file_.since_ns = now_ns_;
   std::vector<std::uint8_t> state;
   for (const auto& [key, entry] : state_) state.insert(state.end(), entry.begin(), entry.end());
   int error = write(BlockType::header, header_payload(header_));
@@ -171,8 +160,8 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   return 0;
 }
 
-int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on) {
-  const std::array<std::uint64_t, 3> summary{file_.entries, static_cast<std::uint64_t>(wall_ns),
+int FlightArchive::end_file(bool run_goes_on) {
+  const std::array<std::uint64_t, 3> summary{file_.entries, static_cast<std::uint64_t>(wall_ns_),
                                              run_goes_on ? 1U : 0U};
   std::array<std::uint8_t, sizeof summary> bytes{};
   std::memcpy(bytes.data(), summary.data(), sizeof summary);
@@ -187,7 +176,7 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
   file_.bytes = 0;
   // Files may have been removed or added meanwhile; one that could not be renamed is adopted.
   kept_.known = false;
-  if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
+  if (const int looked = look(); error == 0) error = looked;
   return error;
 }
 
@@ -208,18 +197,18 @@ void FlightArchive::remember_state() {
       state_[{entry.head.kind, entry.head.index}].assign(at, at + sizeof entry.head + entry.head.length);
 }
 
-bool FlightArchive::file_is_full(std::int64_t now_ns) const {
+bool FlightArchive::file_is_full() const {
   return file_.open && (next_header_.has_value() || file_.bytes >= limits_.file_bytes ||
-                        now_ns - file_.since_ns >= limits_.file_ns);
+                        now_ns_ - file_.since_ns >= limits_.file_ns);
 }
 
-int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
+int FlightArchive::write_waiting() {
   if (!file_.open)
-    if (const int error = begin_file(now_ns, wall_ns); error != 0) return error;
+    if (const int error = begin_file(); error != 0) return error;
   int error = write(BlockType::data, waiting_.bytes);
   if (error == ENOENT) {
     forget_file();
-    error = begin_file(now_ns, wall_ns);
+    error = begin_file();
     if (error == 0) error = write(BlockType::data, waiting_.bytes);
   }
   if (error == EBADF)
@@ -246,12 +235,11 @@ int FlightArchive::remove_oldest() {
 // Prepares files before a write; returns 0 or the disk's error.
 int FlightArchive::tidy() {
   if (!kept_.known)
-    if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
+    if (const int error = look(); error != 0) return error;
   // Starts the next file, except for a sensor that is silent.
   const bool silent = now_ns_ - file_.since_ns >= limits_.file_ns + limits_.flush_ns;
-  if (file_is_full(now_ns_) && (!waiting_.bytes.empty() || silent))
-    if (const int error = end_file(now_ns_, wall_ns_, !waiting_.bytes.empty()); error != 0 && error != ENOENT)
-      return error;
+  if (file_is_full() && (!waiting_.bytes.empty() || silent))
+    if (const int error = end_file(!waiting_.bytes.empty()); error != 0 && error != ENOENT) return error;
   while (!kept_.files.empty() && now_ns_ - kept_.files.front().last_ns > limits_.age_ns)
     if (const int error = remove_oldest(); error != 0) return error;
   return 0;
@@ -267,7 +255,7 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
   if (waiting_.bytes.empty()) return;
   if (waiting_.since_ns < 0) waiting_.since_ns = now_ns;
   if (error_ == 0 && !flush && !full() && now_ns - waiting_.since_ns < limits_.flush_ns) return;
-  const int written = write_waiting(now_ns, wall_ns);
+  const int written = write_waiting();
   error_ = written != 0 ? written : tidied;
 }
 
@@ -276,7 +264,7 @@ std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
   // A full disk may still have space for the small end; the error is that of the data.
   if (file_.open)
-    if (const int ended = end_file(now_ns, wall_ns, false); waiting_.entries == 0) error_ = ended;
+    if (const int ended = end_file(false); waiting_.entries == 0) error_ = ended;
   waiting_.bytes.clear();
   lost_.waiting += std::exchange(waiting_.load, {});
   return std::exchange(waiting_.entries, 0);

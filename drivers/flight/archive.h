@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/flight/block.h"
@@ -56,7 +57,7 @@ class FlightArchive {
   // Writes due data, starts and ends files, removes old ones. flush: all waiting data are due.
   void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
   // From the next block on; ends the present file.
-  void set_header(FlightHeader header);
+  void set_header(FlightHeader header) { next_header_ = std::move(header); }
   // Writes waiting data and ends the file. Returns the number of entries lost because the disk rejects them.
   std::uint64_t close(std::int64_t now_ns, std::int64_t wall_ns);
 
@@ -102,16 +103,16 @@ class FlightArchive {
     FlightLoss with_files, waiting;
   };
 
-  int look(std::int64_t now_ns, std::int64_t wall_ns);
-  int begin_file(std::int64_t now_ns, std::int64_t wall_ns);
-  int end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on);
+  int look();
+  int begin_file();
+  int end_file(bool run_goes_on);
   int write(BlockType type, std::span<const std::uint8_t> content);
-  int write_waiting(std::int64_t now_ns, std::int64_t wall_ns);
+  int write_waiting();
   void remember_state();
   void forget_file();
   int remove_oldest();
   int tidy();
-  [[nodiscard]] bool file_is_full(std::int64_t now_ns) const;
+  [[nodiscard]] bool file_is_full() const;
 
   static constexpr std::size_t kBlockTarget = 1U << 16U;
 
@@ -124,7 +125,7 @@ class FlightArchive {
   std::uint64_t began_ = 0;  // number of the run's first file
   Waiting waiting_;
   Deflater deflater_;
-  std::int64_t now_ns_ = 0, wall_ns_ = 0;  // of the last turn
+  std::int64_t now_ns_ = 0, wall_ns_ = 0;  // of the present or last turn
   // Latest value of each channel and the wall clock's shift: every file starts with them.
   std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
   Lost lost_;

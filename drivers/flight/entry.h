@@ -45,6 +45,11 @@ struct FlightEntryHead {
   std::uint16_t index = 0;
   std::uint32_t length = 0;  // of the payload, bytes
   std::int64_t time_ns = 0;
+
+  // From a device or LCM, not a state.
+  [[nodiscard]] bool is_received() const noexcept {
+    return kind == FlightKind::bytes || kind == FlightKind::can || kind == FlightKind::message;
+  }
 };
 static_assert(sizeof(FlightEntryHead) == 16);
 

@@ -107,11 +107,7 @@ FlightReader::Item FlightReader::begin_file() {
     end_run();
   }
   header_ = std::move(fresh);
-  file_.at = stream_.passed;
-  file_.entries = 0;
-  file_.begun = true;
-  file_.closed = false;
-  file_.whole = true;
+  file_ = {.at = stream_.passed, .begun = true};
   ++counts_.files;
   drop(block_.size());
   if (first || goes_on) return Item::header;
@@ -127,16 +123,14 @@ void FlightReader::take_block() {
     rest_ = content_;
     return;
   }
-  std::uint64_t stated = 0;
-  if (content_.size() >= sizeof stated) std::memcpy(&stated, content_.data(), sizeof stated);
+  const FlightEntry end{{}, content_};
+  std::uint64_t stated = 0, goes_on = 0;
   file_.closed = true;
-  std::uint64_t goes_on = 0;
-  if (content_.size() >= sizeof stated + sizeof file_.closed_ns + sizeof goes_on)
-    std::memcpy(&goes_on, content_.data() + sizeof stated + sizeof file_.closed_ns, sizeof goes_on);
-  file_.run_goes_on = goes_on != 0;
   file_.closed_ns = INT64_MIN;
-  if (content_.size() >= sizeof stated + sizeof file_.closed_ns)
-    std::memcpy(&file_.closed_ns, content_.data() + sizeof stated, sizeof file_.closed_ns);
+  end.value(stated);
+  end.value(file_.closed_ns, sizeof stated);
+  end.value(goes_on, sizeof stated + sizeof file_.closed_ns);
+  file_.run_goes_on = goes_on != 0;
   if (stated > file_.entries) {
     counts_.missing_entries += stated - file_.entries;
     file_.whole = false;
@@ -149,9 +143,7 @@ void FlightReader::note_arrival() {
   const FlightEntryHead& head = entry_.head;
   if (std::int64_t set_ns = 0; head.kind == FlightKind::wall && entry_.value(set_ns))
     run_.wall_set_ns = set_ns;
-  const bool came =
-      head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
-  if (!came || head.time_ns <= 0) return;
+  if (!head.is_received() || head.time_ns <= 0) return;
   if (run_.began_ns == 0) run_.began_ns = head.time_ns;
   run_.arrived_ns = head.time_ns;
 }

@@ -17,12 +17,8 @@ constexpr const char* kCarries[] = {"bytes", "can", "messages"};
 std::string escaped(std::string_view value) {
   std::string out;
   for (const char c : value) {
-    if (c == '\\')
-      out += "\\\\";
-    else if (c == '\n')
-      out += "\\n";
-    else
-      out += c;
+    if (c == '\\' || c == '\n') out += '\\';
+    out += c == '\n' ? 'n' : c;
   }
   return out;
 }
@@ -30,76 +26,62 @@ std::string escaped(std::string_view value) {
 std::string unescaped(std::string_view value) {
   std::string out;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    if (value[i] != '\\' || i + 1 == value.size()) {
-      out += value[i];
-      continue;
-    }
-    ++i;
-    out += value[i] == 'n' ? '\n' : value[i];
+    const bool escape = value[i] == '\\' && i + 1 < value.size();
+    i += escape ? 1 : 0;
+    out += escape && value[i] == 'n' ? '\n' : value[i];
   }
   return out;
+}
+
+[[noreturn]] void refuse(std::string_view key, const std::string& value, const char* expected) {
+  throw std::runtime_error("its header says " + std::string(key) + " = " + in_quotes(value) + ", expected " +
+                           expected);
 }
 
 template <typename T>
 T number(std::string_view key, const std::string& text) {
   T out{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw std::runtime_error("its header says " + std::string(key) + " = " + in_quotes(text) +
-                             ", expected a whole number");
+  if (error != std::errc() || end != text.data() + text.size()) refuse(key, text, "a whole number");
   return out;
 }
 
-// Limited, so that differences do not overflow.
-std::int64_t time_of_day(std::string_view key, const std::string& text) {
-  const auto out = number<std::int64_t>(key, text);
-  if (out < 0)
-    throw std::runtime_error("its header says " + std::string(key) + " = " + in_quotes(text) +
-                             ", expected a time since 1970");
-  return out;
-}
-
-// Keys with plain text values; missing ones are empty.
-struct Text {
+// Keys with plain text values, and with numbers; missing ones are empty or 0.
+template <typename T>
+struct Key {
   std::string_view key;
-  std::string FlightHeader::*text;
+  T FlightHeader::*value;
 };
-constexpr Text kTexts[] = {{"program", &FlightHeader::program},
-                           {"sensor", &FlightHeader::sensor},
-                           {"source", &FlightHeader::source},
-                           {"driver", &FlightHeader::driver},
-                           {"configuration_file", &FlightHeader::configuration_file},
-                           {"configuration", &FlightHeader::configuration},
-                           {"boot", &FlightHeader::boot},
-                           {"interface", &FlightHeader::interface}};
+constexpr Key<std::string> kTexts[] = {{"program", &FlightHeader::program},
+                                       {"sensor", &FlightHeader::sensor},
+                                       {"source", &FlightHeader::source},
+                                       {"driver", &FlightHeader::driver},
+                                       {"configuration_file", &FlightHeader::configuration_file},
+                                       {"configuration", &FlightHeader::configuration},
+                                       {"boot", &FlightHeader::boot},
+                                       {"interface", &FlightHeader::interface}};
+constexpr Key<std::uint64_t> kNumbers[] = {
+    {"run", &FlightHeader::run}, {"number", &FlightHeader::number}, {"began", &FlightHeader::began}};
 
 void take(FlightHeader& out, std::string_view key, std::string value) {
   constexpr std::string_view kOption = "option.", kFile = "file.";
-  for (const Text& each : kTexts)
-    if (key == each.key) out.*each.text = value;
-  if (key == "run")
-    out.run = number<std::uint64_t>(key, value);
-  else if (key == "number")
-    out.number = number<std::uint64_t>(key, value);
-  else if (key == "began")
-    out.began = number<std::uint64_t>(key, value);
-  else if (key == "settings")
-    out.settings = number<std::uint32_t>(key, value);
-  else if (key == "opened_ns")
-    out.opened_ns = number<std::int64_t>(key, value);
-  else if (key == "powered_ns")
-    out.powered_ns = time_of_day(key, value);
-  else if (key == "channel")
-    out.channels.push_back(std::move(value));
-  else if (key.starts_with(kOption))
-    out.options[unescaped(key.substr(kOption.size()))] = std::move(value);
-  else if (key.starts_with(kFile))
-    out.files[unescaped(key.substr(kFile.size()))] = std::move(value);
-  else if (key == "carries") {
+  for (const auto& each : kTexts)
+    if (key == each.key) out.*each.value = value;
+  for (const auto& each : kNumbers)
+    if (key == each.key) out.*each.value = number<std::uint64_t>(key, value);
+  if (key == "settings") out.settings = number<std::uint32_t>(key, value);
+  if (key == "opened_ns") out.opened_ns = number<std::int64_t>(key, value);
+  if (key == "powered_ns") {
+    out.powered_ns = number<std::int64_t>(key, value);
+    // Differences of times since 1970 do not overflow.
+    if (*out.powered_ns < 0) refuse(key, value, "a time since 1970");
+  }
+  if (key == "channel") out.channels.push_back(value);
+  if (key.starts_with(kOption)) out.options[unescaped(key.substr(kOption.size()))] = value;
+  if (key.starts_with(kFile)) out.files[unescaped(key.substr(kFile.size()))] = value;
+  if (key == "carries") {
     const auto* const found = std::find(std::begin(kCarries), std::end(kCarries), value);
-    if (found == std::end(kCarries))
-      throw std::runtime_error("its header says carries = " + in_quotes(value) +
-                               ", expected bytes, can or messages");
+    if (found == std::end(kCarries)) refuse(key, value, "bytes, can or messages");
     out.carries = static_cast<FlightHeader::Carries>(found - std::begin(kCarries));
   }
 }
@@ -116,8 +98,8 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
     for (const auto& [name, value] : named)
       if (name.find('=') == std::string::npos) add(kind + escaped(name), value);
   };
-  for (const Text& each : kTexts)
-    if (!(header.*each.text).empty()) add(std::string(each.key), header.*each.text);
+  for (const auto& each : kTexts)
+    if (!(header.*each.value).empty()) add(std::string(each.key), header.*each.value);
   add("carries", kCarries[static_cast<int>(header.carries)]);
   add_named("option.", header.options);
   for (const std::string& channel : header.channels) add("channel", channel);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sample time and missing samples from a record's time column.
+// Sample time and missing samples from a record's time column, and the times at which its rows were measured, used by
+// every command.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +25,7 @@ struct SampleClock {
 // Throws std::invalid_argument unless time_s is strictly increasing and has two samples or more. An even clock
 // with late stamps is assumed where their delay returns. Else the median step defines a gap, so up to half of the
 // steps may be gaps. Coarsely rounded stamps alternate between k and k + 1 ticks; so a step is a gap only if later
-// stamps stay late. Scattering stamps: scattered_stamps.h.
+// stamps stay late.
 [[nodiscard]] SampleClock sample_clock(std::span<const double> time_s);
 
 struct Hole {
@@ -34,5 +35,26 @@ struct Hole {
 
 // In order of time.
 [[nodiscard]] std::vector<Hole> holes(std::span<const double> time_s, const SampleClock& clock);
+
+// The time stamps themselves, or, if they scatter (SampleClock::scatters), an even clock that counts the
+// missing samples of each gap.
+class RowTimes {
+ public:
+  // clock: sample_clock(time_s). Needs at least one row.
+  RowTimes(std::span<const double> time_s, const SampleClock& clock);
+
+  // Time of the next row, in seconds since the first row.
+  double next(double stamp_s);
+
+ private:
+  double period_s_, first_s_;
+  bool scatters_;
+  std::vector<Hole> holes_;
+  std::size_t row_ = 0, at_ = 0;
+  double even_s_ = 0.0;
+};
+
+// Sample rate in Hz, rounded to nine digits; the period from time stamps carries their rounding.
+[[nodiscard]] double rounded_rate(double period_s);
 
 }  // namespace ifog

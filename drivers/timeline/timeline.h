@@ -12,16 +12,50 @@
 //   - A single early arrival stamp has no effect; kEarly consecutive ones have.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 
-#include "drivers/timeline/recent_frames.h"
 #include "drivers/timeline/sample_pace.h"
-#include "drivers/timeline/ticks.h"
 #include "drivers/timeline/two_devices.h"
 
 namespace ifog {
+
+// Counter positions and values of the last accepted frames, to recognise duplicates, overtaken frames and
+// frames of another device.
+class RecentFrames {
+ public:
+  enum class Had : std::uint8_t { no, same, other };
+  static constexpr std::uint64_t kMost = 64;
+
+  static std::uint64_t digest_of(std::span<const double> values) noexcept {
+    return std::hash<std::string_view>()({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+  }
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return std::min(kept_, kMost); }
+  // Tells if a frame was accepted `back` samples before the last one, with the same or other values.
+  [[nodiscard]] Had had(std::uint64_t back, std::uint64_t digest) const noexcept {
+    Had out = Had::no;
+    for (std::uint64_t i = 0; i < size(); ++i)
+      if (frames_[i].first + back == place_) out = frames_[i].second == digest ? Had::same : Had::other;
+    return out;
+  }
+  // Adds the next frame, `samples` after the last one.
+  void keep(std::uint64_t samples, std::uint64_t digest) noexcept {
+    place_ += samples;
+    frames_[kept_++ % kMost] = {place_, digest};
+  }
+  void forget() noexcept { kept_ = 0; }
+
+ private:
+  std::uint64_t place_ = 0, kept_ = 0;  // unwrapped counter; number of frames
+  std::array<std::pair<std::uint64_t, std::uint64_t>, kMost> frames_{};
+};
 
 class Timeline {
  public:

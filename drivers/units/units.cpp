@@ -15,68 +15,63 @@
 namespace ifog {
 namespace {
 
-using Unit = std::pair<std::string_view, double>;
+// SI value = value * scale + offset, within a quantity. names: in lower case, as from plain(), between bars.
+struct Unit {
+  std::string_view names;
+  double scale, offset = 0.0;
+};
+using Units = std::span<const Unit>;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-constexpr std::array kAngles{Unit{"rad", 1.0},
-                             Unit{"radian", 1.0},
-                             Unit{"radiant", 1.0},
-                             Unit{"deg", kDegree},
-                             Unit{"degree", kDegree},
-                             Unit{"degre", kDegree},
-                             Unit{"degreofarc", kDegree},
-                             Unit{"degdeg", kDegree},  // sign and word
-                             Unit{"arcmin", kDegree / 60.0},
-                             Unit{"arcminute", kDegree / 60.0},
-                             Unit{"arcsec", kDegree / 3600.0},
-                             Unit{"arcsecond", kDegree / 3600.0},
-                             Unit{"mas", kDegree / 3600.0e3},
-                             Unit{"cdeg", kDegree * 1e-2},
-                             Unit{"gon", kTurn / 400.0},
-                             Unit{"rev", kTurn},
-                             Unit{"revolution", kTurn},
-                             Unit{"turn", kTurn},
-                             Unit{"umdr", kTurn}};
+constexpr Unit kAngles[] = {{"|rad|radian|radiant|", 1.0},
+                            {"|deg|degree|degre|degreofarc|degdeg|", kDegree},  // degdeg: sign and word
+                            {"|arcmin|arcminute|", kDegree / 60.0},
+                            {"|arcsec|arcsecond|", kDegree / 3600.0},
+                            {"|mas|", kDegree / 3600.0e3},
+                            {"|cdeg|", kDegree * 1e-2},
+                            {"|gon|", kTurn / 400.0},
+                            {"|rev|revolution|turn|umdr|", kTurn}};
 
 // Revolution in "per minute" only. By ISO 80000-3 "1/min" is a rotational frequency, while "1/s" may be an
 // angular velocity; r, U (Umdrehung) and tr (tour) are revolutions.
 constexpr std::array<std::string_view, 5> kPerMinute{"1", "", "r", "u", "tr"};
 
-constexpr std::array kRates{Unit{"dps", kDegree},
-                            Unit{"mdps", kDegree * 1e-3},
-                            Unit{"dph", kDegree / 3600.0},
-                            Unit{"udps", kDegree * 1e-6},
-                            Unit{"degps", kDegree},
-                            Unit{"radps", 1.0},
-                            Unit{"degph", kDegree / 3600.0},
-                            Unit{"degh", kDegree / 3600.0},
-                            Unit{"mradps", 1e-3},
-                            Unit{"rpm", kTurn / 60.0},
-                            Unit{"krpm", kTurn / 60.0e-3},
-                            Unit{"upm", kTurn / 60.0},
-                            Unit{"minutinver", kTurn / 60.0}};
+constexpr Unit kRates[] = {{"|dps|degps|", kDegree},
+                           {"|mdps|", kDegree * 1e-3},
+                           {"|udps|", kDegree * 1e-6},
+                           {"|dph|degph|degh|", kDegree / 3600.0},
+                           {"|radps|", 1.0},
+                           {"|mradps|", 1e-3},
+                           {"|rpm|upm|minutinver|", kTurn / 60.0},
+                           {"|krpm|", kTurn / 60.0e-3}};
 
-constexpr std::array kTimes{Unit{"s", 1.0},      Unit{"sec", 1.0},     Unit{"second", 1.0},
-                            Unit{"sek", 1.0},    Unit{"secon", 1.0},   Unit{"sekunde", 1.0},
-                            Unit{"min", 60.0},   Unit{"minute", 60.0}, Unit{"h", 3600.0},
-                            Unit{"hr", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hour", 3600.0},
-                            Unit{"std", 3600.0}, Unit{"d", 86400.0},   Unit{"day", 86400.0}};
+constexpr Unit kTimes[] = {{"|s|sec|second|sek|secon|sekunde|", 1.0},
+                           {"|min|minute|", 60.0},
+                           {"|h|hr|hrs|hour|std|", 3600.0},
+                           {"|d|day|", 86400.0}};
 
-constexpr std::array kPrefixes{Unit{"milli", 1e-3}, Unit{"micro", 1e-6}, Unit{"nano", 1e-9},
-                               Unit{"m", 1e-3},     Unit{"u", 1e-6},     Unit{"n", 1e-9}};
+constexpr std::pair<std::string_view, double> kPrefixes[] = {{"milli", 1e-3}, {"micro", 1e-6}, {"nano", 1e-9},
+                                                             {"m", 1e-3},     {"u", 1e-6},     {"n", 1e-9}};
 
-template <std::size_t N>
-std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
-  for (const auto& [name, value] : units)
-    if (name == text || (name.size() > 2 && text == std::string(name) + "s")) return value;
-  return std::nullopt;
+const Unit* find_in(Units units, std::string_view name) {
+  const auto found = std::ranges::find_if(units, [between = "|" + std::string(name) + "|"](const Unit& unit) {
+    return unit.names.find(between) != std::string_view::npos;
+  });
+  return found == units.end() ? nullptr : &*found;
+}
+
+// Also in the plural, of names of three letters or more.
+std::optional<double> find(Units units, std::string_view text) {
+  const Unit* unit = find_in(units, text);
+  if (unit == nullptr && text.size() > 3 && text.ends_with('s'))
+    unit = find_in(units, text.substr(0, text.size() - 1));
+  return unit == nullptr ? std::nullopt : std::optional(unit->scale);
 }
 
 // Also with a prefix, of a unit of at most that value: mrad, milliradians; ms, nanoseconds, but no milli-hours.
-template <std::size_t N>
-std::optional<double> find_prefixed(const std::array<Unit, N>& units, std::string_view text, double most) {
+std::optional<double> find_prefixed(Units units, std::string_view text, double most) {
   if (const std::optional<double> whole = find(units, text)) return whole;
   for (const auto& [prefix, value] : kPrefixes)
     if (text.starts_with(prefix))
@@ -209,45 +204,29 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
 
 namespace {
 
-// SI value = value * scale + offset, within a quantity. Lower case, as from plain().
-struct QuantityUnit {
-  std::string_view name;
-  double scale, offset = 0.0;
-};
-
 struct Quantity {
   std::string_view shown;  // for messages
-  std::span<const QuantityUnit> units;
+  Units units;
 };
 
 constexpr double kGravity = 9.80665, kZeroCelsius_K = 273.15, kFahrenheit = 5.0 / 9.0;
 constexpr double kZeroFahrenheit_K = kZeroCelsius_K - 32.0 * kFahrenheit;
 
-constexpr std::array kTemperatures{QuantityUnit{"degc", 1.0, kZeroCelsius_K},
-                                   QuantityUnit{"c", 1.0, kZeroCelsius_K},
-                                   QuantityUnit{"celsius", 1.0, kZeroCelsius_K},
-                                   QuantityUnit{"degf", kFahrenheit, kZeroFahrenheit_K},
-                                   QuantityUnit{"f", kFahrenheit, kZeroFahrenheit_K},
-                                   QuantityUnit{"fahrenheit", kFahrenheit, kZeroFahrenheit_K},
-                                   QuantityUnit{"k", 1.0},
-                                   QuantityUnit{"kelvin", 1.0}};
-constexpr std::array kAccelerations{QuantityUnit{"mps2", 1.0},           QuantityUnit{"m/s2", 1.0},
-                                    QuantityUnit{"m/s^2", 1.0},          QuantityUnit{"m/s\xC2\xB2", 1.0},
-                                    QuantityUnit{"m/s/s", 1.0},          QuantityUnit{"m s^-2", 1.0},
-                                    QuantityUnit{"g", kGravity},         QuantityUnit{"mg", kGravity * 1e-3},
-                                    QuantityUnit{"ug", kGravity * 1e-6}, QuantityUnit{"gal", 1e-2},
-                                    QuantityUnit{"mgal", 1e-5}};
-constexpr std::array kVoltages{QuantityUnit{"v", 1.0}, QuantityUnit{"mv", 1e-3}, QuantityUnit{"uv", 1e-6},
-                               QuantityUnit{"kv", 1e3}};
-constexpr std::array kCurrents{QuantityUnit{"a", 1.0}, QuantityUnit{"ma", 1e-3}, QuantityUnit{"ua", 1e-6}};
-constexpr std::array kFluxDensities{QuantityUnit{"t", 1.0},      QuantityUnit{"mt", 1e-3},
-                                    QuantityUnit{"ut", 1e-6},    QuantityUnit{"nt", 1e-9},
-                                    QuantityUnit{"gauss", 1e-4}, QuantityUnit{"mgauss", 1e-7}};
-constexpr std::array kPressures{QuantityUnit{"pa", 1.0}, QuantityUnit{"hpa", 1e2}, QuantityUnit{"kpa", 1e3},
-                                QuantityUnit{"mbar", 1e2}, QuantityUnit{"bar", 1e5}};
-
-constexpr std::array kRatios{QuantityUnit{"pct", 1.0}, QuantityUnit{"%", 1.0}, QuantityUnit{"percent", 1.0},
-                             QuantityUnit{"%rh", 1.0}};
+constexpr Unit kTemperatures[] = {{"|degc|c|celsius|", 1.0, kZeroCelsius_K},
+                                  {"|degf|f|fahrenheit|", kFahrenheit, kZeroFahrenheit_K},
+                                  {"|k|kelvin|", 1.0}};
+constexpr Unit kAccelerations[] = {{"|mps2|m/s2|m/s^2|m/s\xC2\xB2|m/s/s|m s^-2|", 1.0},
+                                   {"|g|", kGravity},
+                                   {"|mg|", kGravity * 1e-3},
+                                   {"|ug|", kGravity * 1e-6},
+                                   {"|gal|", 1e-2},
+                                   {"|mgal|", 1e-5}};
+constexpr Unit kVoltages[] = {{"|v|", 1.0}, {"|mv|", 1e-3}, {"|uv|", 1e-6}, {"|kv|", 1e3}};
+constexpr Unit kCurrents[] = {{"|a|", 1.0}, {"|ma|", 1e-3}, {"|ua|", 1e-6}};
+constexpr Unit kFluxDensities[] = {{"|t|", 1.0},   {"|mt|", 1e-3},    {"|ut|", 1e-6},
+                                   {"|nt|", 1e-9}, {"|gauss|", 1e-4}, {"|mgauss|", 1e-7}};
+constexpr Unit kPressures[] = {{"|pa|", 1.0}, {"|hpa|mbar|", 1e2}, {"|kpa|", 1e3}, {"|bar|", 1e5}};
+constexpr Unit kRatios[] = {{"|pct|%|percent|%rh|", 1.0}};
 
 constexpr std::array kQuantities{Quantity{"degC, degF, K", kTemperatures},
                                  Quantity{"mps2, g, mg, Gal", kAccelerations},
@@ -256,12 +235,6 @@ constexpr std::array kQuantities{Quantity{"degC, degF, K", kTemperatures},
                                  Quantity{"uT, nT, mT, gauss", kFluxDensities},
                                  Quantity{"Pa, hPa, kPa, mbar, bar", kPressures},
                                  Quantity{"pct, %", kRatios}};
-
-const QuantityUnit* find_in(const Quantity& quantity, std::string_view name) {
-  for (const QuantityUnit& unit : quantity.units)
-    if (unit.name == name) return &unit;
-  return nullptr;
-}
 
 }  // namespace
 
@@ -272,7 +245,7 @@ std::string clock_speed(double runs, const char* right) {
   std::ostringstream out;
   out.precision(4);
   out << "runs " << std::max(runs, 1.0 / runs) << " times too " << (runs < 1.0 ? "slow" : "fast");
-  for (const auto& [unit, ns] : {Unit{"us", 1e3}, {"ms", 1e6}, {"s", 1e9}})
+  for (const auto& [unit, ns] : {std::pair("us", 1e3), {"ms", 1e6}, {"s", 1e9}})
     if (std::abs(runs * ns - 1.0) < kErrs) out << " (perhaps in " << unit << ", expected ns)";
   return out.str();
 }
@@ -281,9 +254,9 @@ std::optional<UnitConversion> convert_unit(std::string_view from, std::string_vi
   if (from == wanted) return UnitConversion{};
   const std::string a = plain(from), b = plain(wanted);
   for (const Quantity& quantity : kQuantities) {
-    const QuantityUnit* const to = find_in(quantity, b);
+    const Unit* const to = find_in(quantity.units, b);
     if (to == nullptr) continue;
-    const QuantityUnit* const is = find_in(quantity, a);
+    const Unit* const is = find_in(quantity.units, a);
     if (is == nullptr) return std::nullopt;
     return UnitConversion{is->scale / to->scale, (is->offset - to->offset) / to->scale};
   }
@@ -308,7 +281,7 @@ UnitConversion convert_to_column(std::string_view stated, std::string_view colum
 std::string other_units(std::string_view wanted) {
   const std::string name = plain(wanted);
   for (const Quantity& quantity : kQuantities)
-    if (find_in(quantity, name) != nullptr) return std::string(quantity.shown);
+    if (find_in(quantity.units, name) != nullptr) return std::string(quantity.shown);
   if (time_unit(wanted)) return "s, ms, us, ns, min, h, d";
   return angle_unit(wanted, true, false) ? "rad/s, deg/s, deg/h, rpm" : "";
 }

@@ -5,16 +5,31 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "drivers/units/turn.h"
 
 namespace ifog {
 namespace {
+
+constexpr std::size_t kWindow = 256;   // rows
+constexpr std::ptrdiff_t kFewest = 8;  // windows at each rate; fewer may be a device that starts
+constexpr double kOther = 0.01;        // of the rate
+constexpr double kTimesScatter = 8.0;  // of the windows' periods; less is a rate that wanders
+constexpr double kLongStep = 1.5;      // of the usual step; rows are missing in longer ones
+
+double mean_without_gaps(const std::vector<double>& time_s) {
+  const double longest_s = kLongStep * median_step_s(time_s);
+  double sum_s = 0.0, steps = 0.0;
+  for (std::size_t i = 1; i < time_s.size(); ++i)
+    if (const double step_s = time_s[i] - time_s[i - 1]; step_s <= longest_s) sum_s += step_s, steps += 1.0;
+  return sum_s / steps;
+}
 
 // Converts an angle to the mean rate since the previous row; the first row has none. An angle that stays
 // within one turn wraps by a turn and changes by less than half a turn per row; after a gap its change is
@@ -68,8 +83,7 @@ void convert(RowBlock& rows, const std::vector<FileColumn>& columns) {
 }
 
 // Needs all rows, to find out whether an angle stays within one turn.
-void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& notes,
-              const std::string& path) {
+void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, const RowNotes& notes) {
   if (all.size() < 2) {
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (columns[i].angle_rad()) std::ranges::fill(all.columns[i], kMissing);
@@ -94,9 +108,9 @@ void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, RowNotes& n
     // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)
-        fail_at(path, notes.line_of_row(row),
-                printable(column.header) + " has turned at " + shortest(values[row]) +
-                    " rad/s since the row before, which no sensor measures");
+        notes.refuse(notes.line_of_row(row), printable(column.header) + " has turned at " +
+                                                 shortest(values[row]) +
+                                                 " rad/s since the row before, which no sensor measures");
   }
 }
 
@@ -107,13 +121,11 @@ std::string what_no_sensor_measures(const std::string& name, std::string_view ce
          shortest(range.least) + " to " + shortest(range.most);
 }
 
-RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
-                     RowSink& sink, RowNotes& notes)
-    : path_(path),
-      columns_(std::move(columns)),
+RowChecks::RowChecks(const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink, RowNotes& notes)
+    : columns_(std::move(columns)),
       sink_(sink),
       notes_(notes),
-      clock_(path, layout.time.value_or(CsvTime{}).header, layout.keep_repeats, notes,
+      clock_(layout.time.value_or(CsvTime{}).header, layout.keep_repeats, notes,
              [this](RowBlock& rows) { behind_clock(rows); }) {
   if (std::ranges::any_of(columns_, [](const auto& column) { return column.angle_rad().has_value(); }))
     all_.emplace();
@@ -136,10 +148,9 @@ void RowChecks::behind_clock(RowBlock& rows) {
 void RowChecks::finish(std::span<const Fault> found) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
   clock_.finish();
-  if (const std::string change = rate_.change_in_words(); !change.empty())
-    notes_.notices.push_back(path_ + ": " + change);
+  if (const std::string change = rate_.change_in_words(); !change.empty()) notes_.notice(0, change);
   if (!all_) return;
-  as_rates(*all_, columns_, notes_, path_);
+  as_rates(*all_, columns_, notes_);
   sink_.take(*all_);
 }
 
@@ -153,11 +164,49 @@ void RowChecks::tell_impossible(const FileColumn& column, const Fault& found) {
     if (found.first.find_first_not_of("+-0123456789") == std::string::npos)
       more += "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.cell) +
               ":0.00763deg/s'";
-    fail_at(path_, found.line, what + more);
+    notes_.refuse(found.line, what + more);
   }
-  notes_.faults.push_back(path_ + ":" + std::to_string(found.line) + ": " + what + "; " +
-                          std::to_string(found.count) + (found.count == 1 ? " such cell" : " such cells") +
-                          " treated as missing");
+  notes_.fault(found.line, what + "; " + std::to_string(found.count) +
+                               (found.count == 1 ? " such cell" : " such cells") + " treated as missing");
+}
+
+void RowRate::take(const RowBlock& rows) {
+  origin_ = rows.origin;
+  for (const double time : rows.time_s) {
+    times_.push_back(time);
+    if (times_.size() <= kWindow) continue;
+    begins_s_.push_back(times_.front());
+    period_s_.push_back(mean_without_gaps(times_));
+    times_ = {time};
+  }
+}
+
+// The change is where the sum of departures from the mean is largest (E. S. Page, 1954).
+std::string RowRate::change_in_words() const {
+  const std::ptrdiff_t windows = std::ssize(period_s_);
+  if (windows < 2 * kFewest) return "";
+  const double mean_s =
+      std::accumulate(period_s_.begin(), period_s_.end(), 0.0) / static_cast<double>(windows);
+  double sum_s = 0.0, most_s = -1.0;
+  auto change = period_s_.begin();
+  for (auto window = change; window != period_s_.end(); ++window) {
+    if (std::abs(sum_s) > most_s && window - period_s_.begin() >= kFewest &&
+        period_s_.end() - window >= kFewest)
+      change = window, most_s = std::abs(sum_s);
+    sum_s += *window - mean_s;
+  }
+  const double before_s = median({period_s_.begin(), change}), after_s = median({change, period_s_.end()});
+  std::vector<double> away_s;
+  for (auto window = period_s_.begin(); window != period_s_.end(); ++window)
+    away_s.push_back(std::abs(*window - (window < change ? before_s : after_s)));
+  const double step_s = std::abs(after_s - before_s);
+  if (step_s < kOther * before_s || step_s < kTimesScatter * median(std::move(away_s))) return "";
+  const auto hz = [](double period_s) { return shortest(std::round(1e4 / period_s) / 1e4); };
+  std::string text = "rows come at " + hz(before_s) + " Hz until ";
+  append_time(text, origin_,
+              std::round(1e3 * begins_s_[static_cast<std::size_t>(change - period_s_.begin())]) / 1e3);
+  return text + " s and at " + hz(after_s) +
+         " Hz from there on: no rate is right for both; --from and --to choose one";
 }
 
 }  // namespace ifog

@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "drivers/capture/checks/row_clock.h"
-#include "drivers/capture/checks/row_rate.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
@@ -20,11 +19,24 @@ namespace ifog {
 // "rate_radps is '1e9', which no sensor measures, expected …".
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
 
+// Tells if rows come at another rate from some time on. Analyses assume an even clock, and a device that is set to
+// another output rate, or a logger, may change it in a recording.
+class RowRate {
+ public:
+  void take(const RowBlock& rows);
+  // "rows come at 100 Hz until 12.5 s and at 105 Hz from there on: …"; "" for one rate, up to 1 %.
+  [[nodiscard]] std::string change_in_words() const;
+
+ private:
+  TimeOrigin origin_;
+  std::vector<double> times_;                // of the present window
+  std::vector<double> begins_s_, period_s_;  // of each window before
+};
+
 class RowChecks {
  public:
-  // columns: in the order of the sink's names. Path, sink and notes must outlive this object.
-  RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
-            RowNotes& notes);
+  // columns: in the order of the sink's names. Sink and notes must outlive this object.
+  RowChecks(const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink, RowNotes& notes);
 
   // Takes the next rows in the file's units, at least one. Throws std::runtime_error with one line, as
   // finish() does.
@@ -40,7 +52,6 @@ class RowChecks {
   void tell_impossible(const FileColumn& column, const Fault& found);
   void behind_clock(RowBlock& rows);
 
-  const std::string& path_;
   const std::vector<FileColumn> columns_;
   RowSink& sink_;
   RowNotes& notes_;

@@ -21,10 +21,6 @@ constexpr double kYear_s = 365.0 * 86'400.0;
 constexpr std::size_t kFew = 8;     // rows that show an earlier time to go on; recordings in one file
 constexpr double kBetween_s = 1.0;  // hole between two recordings in one file
 
-std::size_t line_of(const RowBlock& rows, std::size_t row) {
-  return rows.lines.empty() ? 0 : rows.lines[row];
-}
-
 struct Rollover {
   double length_s;
   const char* what;
@@ -135,18 +131,14 @@ bool repeat_by_chance(const RowBlock& rows) {
 
 }  // namespace
 
-RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
-    : path_(path), time_(std::move(time)), notes_(notes) {}
-
 double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   const auto found = std::ranges::find_if(kRollovers, [&](const Rollover& each) {
     return last_s_ - offset_s_ < each.length_s && now_s + each.length_s > last_s_ &&
            now_s + each.length_s <= last_s_ + kLate_s;
   });
   if (found == kRollovers.end()) return 0.0;
-  notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +
-                           found->what + " does: " + shortest(found->length_s) +
-                           " s are added from there on");
+  notes_.notice(line, printable(time_) + " rolls over, as " + found->what +
+                          " does: " + shortest(found->length_s) + " s are added from there on");
   return found->length_s;
 }
 
@@ -173,7 +165,7 @@ bool RowOrder::settle_back(const RowBlock& rows, std::size_t& row, bool is_last)
     offset_s_ += first_s_ - now_s;
     std::string at = " begins again at ";
     append_time(at, rows.origin, rows.time_s[row]);
-    tell_joined(line_of(rows, row), at + " s");
+    tell_joined(rows.lines[row], at + " s");
     return true;
   }
   if (end == rows.size() && !is_last && joined_ < kFew) return false;
@@ -183,9 +175,8 @@ bool RowOrder::settle_back(const RowBlock& rows, std::size_t& row, bool is_last)
 }
 
 void RowOrder::tell_joined(std::size_t line, const std::string& how) {
-  notes_.notices.push_back(
-      path_ + ":" + std::to_string(line) + ": " + printable(time_) + how +
-      ", as after a clock was set or where two recordings are joined: treated as a hole");
+  notes_.notice(line, printable(time_) + how +
+                          ", as after a clock was set or where two recordings are joined: treated as a hole");
 }
 
 void RowOrder::take(RowBlock& rows, bool is_last) {
@@ -195,7 +186,7 @@ void RowOrder::take(RowBlock& rows, bool is_last) {
   while (i < rows.size()) {
     const double now_s = rows.time_s[i] + offset_s_;
     if (rows_ > 0 && now_s < last_s_) {
-      if (const double longer_s = rolled_over_s(now_s, line_of(rows, i)); longer_s > 0.0) {
+      if (const double longer_s = rolled_over_s(now_s, rows.lines[i]); longer_s > 0.0) {
         offset_s_ += longer_s;
       } else if (now_s >= before_s_) {  // this row continues those before the last one, which is wrong
         drop(rows, --kept, true);
@@ -212,7 +203,7 @@ void RowOrder::take(RowBlock& rows, bool is_last) {
     else
       before_s_ = last_s_;
     last_s_ = now_s;
-    line_ = line_of(rows, i);
+    line_ = rows.lines[i];
     rows.move_row(i++, kept);
     rows.time_s[kept++] = now_s;
   }
@@ -229,7 +220,7 @@ void RowOrder::drop(const RowBlock& rows, std::size_t row, bool late) {
     append_time(what, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
     what += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
   }
-  dropped_.add(line_of(rows, row), std::move(what));
+  dropped_.add(rows.lines[row], std::move(what));
 }
 
 void RowOrder::finish() {
@@ -237,24 +228,19 @@ void RowOrder::finish() {
   if (count == 0) return;
   const bool falls = 2 * falling_ >= count && 2 * count > rows_;
   if (falls || rows_ < kRowsAFault * count)
-    fail_at(
-        path_, dropped_.line,
+    notes_.refuse(
+        dropped_.line,
         dropped_.first +
             (falls ? "; times decrease from row to row, as of a recording written backwards: 'tac' turns them"
              : count > 1 ? "; so are " + std::to_string(count - 1) + " more rows"
                          : "") +
             (joined_ == kFew ? "; of sensors whose rows stand in blocks --only COLUMN=VALUE reads one"
                              : "; --sample-rate HZ reads all rows as even"));
-  notes_.faults.push_back(dropped_.dropped(path_, "row"));
+  notes_.dropped(dropped_, "row");
 }
 
-RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next)
-    : path_(path),
-      time_(time),
-      keep_repeats_(keep_repeats),
-      notes_(notes),
-      next_(std::move(next)),
-      order_(path, std::move(time), notes) {}
+RowClock::RowClock(const std::string& time, bool keep_repeats, RowNotes& notes, Next next)
+    : time_(time), keep_repeats_(keep_repeats), notes_(notes), next_(std::move(next)), order_(time_, notes) {}
 
 void RowClock::take(RowBlock& rows) {
   if (!begun_) keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
@@ -331,7 +317,7 @@ void RowClock::finish() {
   if (last > 0) spread(buffered_, 0, last, buffered_.time_s[last]);
   if (rows > last + 1) {
     if (!(period_s_ > 0.0))
-      fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
+      notes_.refuse(0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
     spread(buffered_, last, rows, buffered_.time_s[last] + static_cast<double>(rows - last) * period_s_);
   }
   if (rows > 0) next_(buffered_);
@@ -340,17 +326,15 @@ void RowClock::finish() {
 
 void RowClock::say() {
   if (repeated_ > 0)
-    notes_.notices.push_back(path_ + ": " + std::to_string(repeated_) +
-                             (repeated_ == 1 ? " row repeats" : " rows repeat") + " the row before and " +
-                             (repeated_ == 1 ? "is" : "are") +
-                             " dropped; --repeats keep reads them as samples");
+    notes_.notice(0, std::to_string(repeated_) + (repeated_ == 1 ? " row repeats" : " rows repeat") +
+                         " the row before and " + (repeated_ == 1 ? "is" : "are") +
+                         " dropped; --repeats keep reads them as samples");
   if (spread_ == 0) return;
-  notes_.notices.push_back(
-      path_ + ": " + std::to_string(spread_) + " rows " +
-      (bursts_.within_s > 0.0 ? "come in bursts"
-       : bursts_.rows > 1     ? "have times as coarse as their steps"
-                              : "have the time of the row before") +
-      " and are spread evenly up to the next time; --sample-rate HZ reads all rows as even");
+  notes_.notice(0, std::to_string(spread_) + " rows " +
+                       (bursts_.within_s > 0.0 ? "come in bursts"
+                        : bursts_.rows > 1     ? "have times as coarse as their steps"
+                                               : "have the time of the row before") +
+                       " and are spread evenly up to the next time; --sample-rate HZ reads all rows as even");
 }
 
 }  // namespace ifog

@@ -22,10 +22,10 @@
 
 namespace ifog {
 
-// time: name of the column, for messages. Path and notes must outlive this object.
 class RowOrder {
  public:
-  RowOrder(const std::string& path, std::string time, RowNotes& notes);
+  // time: name of the column, for messages. Both must outlive this object.
+  RowOrder(const std::string& time, RowNotes& notes) : time_(time), notes_(notes) {}
 
   // Keeps rows whose times, in s, do not decrease. The last of them, which may still prove wrong, is buffered, and so
   // are rows behind it that go back, until the last call.
@@ -42,8 +42,7 @@ class RowOrder {
   // late: the row's own time is wrong; else it goes back.
   void drop(const RowBlock& rows, std::size_t row, bool late);
 
-  const std::string& path_;
-  const std::string time_;
+  const std::string& time_;
   RowNotes& notes_;
   double offset_s_ = 0.0;  // sum of rollovers
   // Times of the first row of the present recording, of the last row and the one before, if any.
@@ -66,7 +65,7 @@ class RowClock {
  public:
   using Next = std::function<void(RowBlock&)>;
 
-  RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next);
+  RowClock(const std::string& time, bool keep_repeats, RowNotes& notes, Next next);
 
   // Takes rows with times in s; rows whose time may still change are buffered. Throws std::runtime_error with
   // one line.
@@ -82,7 +81,6 @@ class RowClock {
   void spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s);
   void say();
 
-  const std::string& path_;
   const std::string time_;
   bool keep_repeats_;
   RowNotes& notes_;

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of a capture's columns, and message format for columns.
+// Names of a capture's columns, what their values may be, and message format for columns.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "drivers/capture/columns/csv_layout.h"
 
 namespace ifog {
 
@@ -32,5 +37,40 @@ void append_shortest(std::string& out, double value);
 
 // Throws std::runtime_error "PATH:LINE: WHAT"; without LINE if it is 0.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
+
+// Possible range of values. Values outside are no measurements, and a single one would dominate a fit. All commands
+// use these ranges.
+struct Measurable {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
+};
+
+// A column of a file, except the time.
+struct FileColumn : CsvColumn {
+  std::string cell;       // its name in the file
+  std::size_t place = 0;  // index of its cell in a row
+  Measurable range;       // in the file's unit
+};
+
+// Range in the unit of the column's name: rates as in the driver interface, channels by their unit (no
+// temperature below absolute zero, no field above 100 T), others as in the driver interface.
+Measurable measurable(const std::string& column);
+
+// The same for a column of a file, in the file's unit. Angles have a wide range.
+Measurable measurable_in_file(const CsvColumn& column);
+Measurable measurable_in_file(const CsvTime& time);
+
+// Removes units in which no sensor measures one of the values, unless that leaves none. range_in: of a unit.
+template <typename RangeIn>
+void keep_measurable(std::vector<std::string>& units, const std::vector<double>& values, RangeIn range_in) {
+  std::vector<std::string> possible = units;
+  std::erase_if(possible, [&](const std::string& unit) {
+    const Measurable range = range_in(unit);
+    return !std::ranges::all_of(values, [&](double value) { return range.holds(value); });
+  });
+  if (!possible.empty()) units = std::move(possible);
+}
 
 }  // namespace ifog

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/readings.h"
 #include "drivers/units/units.h"
 

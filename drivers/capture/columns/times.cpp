@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/columns/readings.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"

@@ -34,33 +34,24 @@ std::string options_in_words(const Readings& readings) {
 
 class Chooser {
  public:
-  Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines)
-      : form_(std::move(form)),
-        names_(form_.sample.names()),
-        path_(path),
-        line_(!has_lines              ? 0
-              : form_.header_line > 0 ? form_.header_line
-                                      : form_.last_line + 1) {
-    header_.layout = form_.layout;
-    header_.separator = form_.separator;
-    header_.notation = form_.notation;
-    header_.last_line = form_.last_line;
-    for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
-    if (form_.layout.only_header == layout.only_header) return;
+  Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines) : path_(path) {
+    static_cast<TableForm&>(header_) = std::move(form);
+    header_.cells = header_.sample.names();
+    if (has_lines) line_ = header_.header_line > 0 ? header_.header_line : header_.last_line + 1;
+    if (header_.layout.only_header == layout.only_header) return;
     kinds_ = "of rows of several kinds are read those of --only " +
-             shell_word(form_.layout.only_header + "=" + form_.layout.only_value);
-    header_.notices.push_back(path_ + ": " + kinds_);
+             shell_word(header_.layout.only_header + "=" + header_.layout.only_value);
+    header_.notices.push_back(kinds_);
   }
 
   CsvHeader choose() {
-    header_.cells = names_;
     named_ = reads_as_named();
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_value.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
-    for (std::size_t i = 0; i < names_.size(); ++i)
+    for (std::size_t i = 0; i < header_.cells.size(); ++i)
       header_.is_clock.push_back(i == header_.time_place || i == header_.time_part ||
-                                 form_.sample.columns[i].increases());
+                                 header_.sample.columns[i].increases());
     if (are_rates_of_several()) fail(kinds_);
     return std::move(header_);
   }
@@ -68,20 +59,21 @@ class Chooser {
  private:
   // Index of a column given by its header or number ("#3").
   [[nodiscard]] std::size_t place(const std::string& wanted) const {
-    const auto count = std::ranges::count(names_, wanted);
-    if (count == 1) return static_cast<std::size_t>(std::ranges::find(names_, wanted) - names_.begin());
+    const auto count = std::ranges::count(header_.cells, wanted);
+    if (count == 1)
+      return static_cast<std::size_t>(std::ranges::find(header_.cells, wanted) - header_.cells.begin());
     const std::size_t number =
         count == 0 && is_number_of_column(wanted) ? std::strtoul(wanted.c_str() + 1, nullptr, 10) : 0;
-    if (number >= 1 && number <= names_.size()) return number - 1;
+    if (number >= 1 && number <= header_.cells.size()) return number - 1;
     fail((count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
-         listed(names_));
+         listed(header_.cells));
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
   // Rows of several sensors in turn, numbered or named by a column: if one name is a gyro's, only its rows
   // are read.
   void look_what_alternates() {
-    for (const TableColumn& column : form_.sample.columns) {
+    for (const TableColumn& column : header_.sample.columns) {
       const Words& words = column.words;
       const std::vector<std::string>& cells = column.cells;
       // A topic's name may begin with a slash. A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
@@ -106,7 +98,7 @@ class Chooser {
         names_sensor_ = &column;
         continue;
       }
-      header_.notices.push_back(path_ + ": " + said + "only rows of " + in_quotes(gyro) +
+      header_.notices.push_back(said + "only rows of " + in_quotes(gyro) +
                                 " are read; others: " + option(other));
       header_.layout.only_header = column.header;
       header_.layout.only_value = gyro;
@@ -121,30 +113,32 @@ class Chooser {
       for (std::size_t row = 0;
            names_sensor_ != nullptr && is_rate_column(column.name) && row < names_sensor_->cells.size();
            ++row)
-        if (!form_.sample.columns[column.place].cells[row].empty()) sensors.insert(names_sensor_->cells[row]);
+        if (!header_.sample.columns[column.place].cells[row].empty())
+          sensors.insert(names_sensor_->cells[row]);
     return sensors.size() > 1;
   }
 
   // Only the rows that are read are used as first rows.
   void keep_only(std::size_t place) {
     header_.only_place = place;
-    form_.sample.keep_rows(place, header_.layout.only_value);
+    header_.sample.keep_rows(place, header_.layout.only_value);
   }
 
   // Time first and a rate, or a table without any possible rate.
   [[nodiscard]] bool reads_as_named() const {
-    if (header_.layout.chooses() || names_.front() != "time_s") return false;
-    if (std::ranges::any_of(
-            names_, [](const std::string& name) { return is_rate_column(name) || is_signal_column(name); }))
+    if (header_.layout.chooses() || header_.cells.front() != "time_s") return false;
+    if (std::ranges::any_of(header_.cells, [](const std::string& name) {
+          return is_rate_column(name) || is_signal_column(name);
+        }))
       return true;
     CsvLayout timed = header_.layout;
     timed.time = CsvTime{};
-    return readings_of(form_.sample, timed).ways.empty();
+    return readings_of(header_.sample, timed).ways.empty();
   }
 
   void expect_every_name_once() const {
     std::set<std::string> seen;
-    for (const std::string& name : names_) {
+    for (const std::string& name : header_.cells) {
       if (name.empty()) fail("a column has no name");
       if (!seen.insert(name).second) fail("column " + in_quotes(name) + " stands twice");
     }
@@ -153,27 +147,28 @@ class Chooser {
 
   // Adds the unit from the row of units if the name has none.
   [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
-    const std::string& unit = form_.sample.columns[i].stated;
-    const auto name = name_with_unit(names_[i], unit);
+    const std::string& unit = header_.sample.columns[i].stated;
+    const auto name = name_with_unit(header_.cells[i], unit);
     if (!name)
-      fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
+      fail("the unit of " + in_quotes(header_.cells[i]) + " is given as " + in_quotes(unit) +
            ", expected that of its name; to read it so: " +
-           (names_[i] == CsvTime{}.header ? option_for(CsvTime{names_[i], unit})
-                                          : option_for(CsvColumn{names_[i], names_[i], ""}, unit)));
-    return {*name, names_[i], ""};
+           (header_.cells[i] == CsvTime{}.header
+                ? option_for(CsvTime{header_.cells[i], unit})
+                : option_for(CsvColumn{header_.cells[i], header_.cells[i], ""}, unit)));
+    return {*name, header_.cells[i], ""};
   }
 
   void choose_columns() {
     CsvLayout& layout = header_.layout;
     if (named_) expect_every_name_once();
     // With only --time, other columns keep their names.
-    const bool own_names =
-        named_ || (layout.time && layout.columns.empty() && std::ranges::any_of(names_, is_rate_column));
-    if (!layout.time && !layout.sample_rate_hz && std::ranges::count(names_, "time_s") == 1)
+    const bool own_names = named_ || (layout.time && layout.columns.empty() &&
+                                      std::ranges::any_of(header_.cells, is_rate_column));
+    if (!layout.time && !layout.sample_rate_hz && std::ranges::count(header_.cells, "time_s") == 1)
       layout.time = CsvTime{};
     if (own_names) {
-      for (std::size_t i = 0; i < names_.size(); ++i)
-        if (names_[i] != layout.time->header) layout.columns.push_back(under_own_name(i));
+      for (std::size_t i = 0; i < header_.cells.size(); ++i)
+        if (header_.cells[i] != layout.time->header) layout.columns.push_back(under_own_name(i));
     } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
       take_reading();
     }
@@ -182,7 +177,7 @@ class Chooser {
     else
       take_time(*layout.time);
     if (layout.other_rates && !named_)
-      for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
+      for (const CsvColumn& other : rates_not_chosen(header_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
       if (column.unit.empty()) column.unit = own_unit(column, at);
@@ -196,8 +191,8 @@ class Chooser {
   // By the row of units or the name, if it becomes the capture's unit. A rate named in deg is often in deg/s.
   [[nodiscard]] std::string own_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
-    column.unit = form_.sample.columns[at].unit;
-    if (column.angle_rad() && form_.sample.columns[at].stated.empty())
+    column.unit = header_.sample.columns[at].unit;
+    if (column.angle_rad() && header_.sample.columns[at].stated.empty())
       fail(in_quotes(column.header) + " is in " + in_quotes(column.unit) +
            " by its name, and no unit was given; to read it so: " + option_for(column, column.unit));
     return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
@@ -208,15 +203,15 @@ class Chooser {
     for (const CsvColumn& asked : header_.layout.columns) (void)place(asked.header);
     Readings found;
     found.why = "no name surely stands above its column";
-    if (form_.unused_names == 0 || !header_.layout.columns.empty())
-      found = readings_of(form_.sample, header_.layout);
+    if (header_.unused_names == 0 || !header_.layout.columns.empty())
+      found = readings_of(header_.sample, header_.layout);
     if (const TableReading* const clear = found.clear()) {
-      header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
-      if (header_.layout.columns.empty() && form_.sample.named) tell_not_read(*clear);
+      header_.notices.push_back("read as: " + in_words(clear->layout));
+      if (header_.layout.columns.empty() && header_.sample.named) tell_not_read(*clear);
       header_.layout = clear->layout;
       return;
     }
-    if (found.ways.empty() && form_.sample.named) fail(no_rate_among(names_));
+    if (found.ways.empty() && header_.sample.named) fail(no_rate_among(header_.cells));
     fail(
         without_names() + (kinds_.empty() ? "" : kinds_ + "; ") + found.why + options_in_words(found) +
         (found.ways.empty()
@@ -228,10 +223,10 @@ class Chooser {
   // Names columns of numbers that are not read, except times and counts of the rows, and how one of them is read that a
   // rate table was commanded, or that names no axis.
   void tell_not_read(const TableReading& reading) {
-    const std::string count = form_.sample.counting();
+    const std::string count = header_.sample.counting();
     std::vector<std::string> left;
     std::string rate;
-    for (const TableColumn& column : form_.sample.columns) {
+    for (const TableColumn& column : header_.sample.columns) {
       const bool is_read = std::ranges::any_of(
           reading.layout.columns, [&](const CsvColumn& chosen) { return chosen.header == column.header; });
       const bool is_time = column.header == reading.layout.time.value_or(CsvTime{}).header ||
@@ -246,39 +241,39 @@ class Chooser {
     const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;
     left.resize(named);
     if (named > 0)
-      header_.notices.push_back(path_ + ": not read: " + listed(left) +
+      header_.notices.push_back("not read: " + listed(left) +
                                 (more > 0 ? " and " + std::to_string(more) + " more" : "") + rate);
   }
 
   // Why columns have numbers and no names; "" if they have names.
   [[nodiscard]] std::string without_names() const {
-    if (form_.sample.named || !is_number_of_column(names_.front())) return "";
-    const std::string cells = std::to_string(names_.size());
-    if (form_.unused_names == 0) return "no header line; columns are #1 to #" + cells + "; ";
-    return "the header has " + std::to_string(form_.unused_names) + " names and the rows have " + cells +
+    if (header_.sample.named || !is_number_of_column(header_.cells.front())) return "";
+    const std::string cells = std::to_string(header_.cells.size());
+    if (header_.unused_names == 0) return "no header line; columns are #1 to #" + cells + "; ";
+    return "the header has " + std::to_string(header_.unused_names) + " names and the rows have " + cells +
            " cells, #1 to #" + cells + "; ";
   }
 
   void take_time(CsvTime& time) {
     const std::vector<std::string> parts = parts_of_time(time.header, [&](const std::string& name) {
-      return is_number_of_column(name) || std::ranges::count(names_, name) > 0;
+      return is_number_of_column(name) || std::ranges::count(header_.cells, name) > 0;
     });
     header_.time_place = place(parts.front());
-    const TableColumn& column = form_.sample.columns[header_.time_place];
+    const TableColumn& column = header_.sample.columns[header_.time_place];
     if (parts.size() > 1) {
       header_.time_part = place(parts.back());
-      header_.part_digits = digits_of_second(form_.sample.columns[header_.time_part]);
+      header_.part_digits = digits_of_second(header_.sample.columns[header_.time_part]);
     } else {
       if (time.unit.empty() && time_unit(column.unit).value_or(1.0) != 1.0) time.unit = column.unit;
       if (const std::string notice = whole_times_notice(column, time); !notice.empty())
-        header_.notices.push_back(path_ + ": " + notice);
+        header_.notices.push_back(notice);
     }
     const std::optional<DateOrder> order = time.unit == kDayFirst     ? DateOrder::day_first
                                            : time.unit == kMonthFirst ? DateOrder::month_first
                                                                       : date_order(column.cells);
     header_.date_order = order.value_or(DateOrder::month_first);
     if (!order)
-      header_.notices.push_back(path_ + ": " + printable(column.name) + " is " + in_quotes(column.cells[0]) +
+      header_.notices.push_back(printable(column.name) + " is " + in_quotes(column.cells[0]) +
                                 " at first and read with the month first; if that is the day: " +
                                 option_for(CsvTime{time.header, kDayFirst}));
   }
@@ -286,14 +281,12 @@ class Chooser {
   void take(std::size_t at, const CsvColumn& column) {
     if (is_rate_column(column.name) && ++rates_ > kInputLimits.csv_rates)
       fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
-    header_.columns.push_back({column, names_[at], at, measurable_in_file(column)});
+    header_.columns.push_back({column, header_.cells[at], at, measurable_in_file(column)});
   }
 
-  TableForm form_;
-  const std::vector<std::string> names_;
-  const std::string& path_;
-  const std::size_t line_;  // of the header; 0: none
   CsvHeader header_;
+  const std::string& path_;
+  std::size_t line_ = 0;  // of the header; 0: none
   std::size_t rates_ = 0;
   std::string kinds_;                          // what is said of rows of several kinds or sensors
   const TableColumn* names_sensor_ = nullptr;  // the column that names the sensors of rows in turn

@@ -9,25 +9,19 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/columns/measurable.h"
-#include "drivers/capture/times/date_time.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/table_form.h"
 
 namespace ifog {
 
-struct CsvHeader {
+struct CsvHeader : TableForm {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   std::vector<std::string> cells;   // names of a row's cells in the file
   std::vector<FileColumn> columns;  // of the capture, without the time
-  CsvLayout layout;                 // layout used
-  char separator = ',';
-  Notation notation;
-  std::string comments;            // lines before the header, as in RowNotes
-  std::size_t last_line = 0;       // number of the line before the first row
-  std::size_t time_place = kNone;  // cell of the time; kNone if rows are equidistant
-  std::size_t time_part = kNone;   // second cell of the time: decimal digits or a time of day
-  std::optional<int> part_digits;  // of that cell, if any; 0: a time of day
+  std::size_t time_place = kNone;   // cell of the time; kNone if rows are equidistant
+  std::size_t time_part = kNone;    // second cell of the time: decimal digits or a time of day
+  std::optional<int> part_digits;   // of that cell, if any; 0: a time of day
   DateOrder date_order = DateOrder::either;
   std::vector<bool> is_clock;        // by cell: a time or counter, which increases where the rest repeats
   std::size_t only_place = kNone;    // cell that decides whether a row is read

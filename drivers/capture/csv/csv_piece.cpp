@@ -74,7 +74,7 @@ struct RowTime {
 // Appends rows to the columns of a piece.
 class Rows {
  public:
-  // most: expected number of rows. Reused columns keep their memory.
+  // most: expected number of rows.
   Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps, std::size_t most)
       : piece_(piece),
         header_(header),
@@ -193,20 +193,23 @@ class Rows {
 
   // False: the row has no time.
   bool take_time() {
-    const std::optional<std::string_view> found = time_.text(header_.part_digits);
-    if (!found)
+    const std::optional<std::string_view> cell = time_.text(header_.part_digits);
+    if (!cell)
       throw Unreadable{printable(header_.cells[header_.time_part]) + " is no whole number of at most " +
                        std::to_string(header_.part_digits.value_or(0)) +
                        " digits, expected the part of a second"};
-    const std::string_view text = *found;
+    const std::string_view text = *cell;
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place];
-    const TimeDigits digits(text, header_.notation, header_.date_order);
-    if (digits.is_date() && unit_s_ != 1.0)
+    const auto date = date_time(text, header_.date_order);
+    if (date && unit_s_ != 1.0)
       throw Unreadable{printable(name) + " is " + in_quotes(text) +
                        ", a date, which says its own unit, expected no other one of --time"};
-    double since = 0.0;
-    if (!stamps_.since(digits, since)) since = stamps_.since(number(name, text, digits));
+    const PointDigits digits(text, header_.notation);
+    const auto exact = date ? date : Decimal::parse(digits);
+    std::optional<double> found = exact ? stamps_.since(*exact) : std::nullopt;
+    if (!found) found = stamps_.since(date ? date->in_double() : number(name, text, digits));
+    const double since = *found;
     if (std::isnan(since)) throw Unreadable{printable(name) + " is missing, expected a time"};
     if (!time_range_.holds(stamps_.origin().in_s(since)))
       throw Unreadable{
@@ -249,17 +252,19 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
     if (header.part_digits) time.part = cell_at(line, header.time_part, header.separator);
     const std::optional<std::string_view> first = time.text(header.part_digits);
     if (!first || first->empty()) continue;
-    return TimeStamps(TimeDigits(*first, header.notation, header.date_order),
+    const auto date = date_time(*first, header.date_order);
+    return TimeStamps(date ? date : Decimal::parse(PointDigits(*first, header.notation)),
                       header.layout.time.value_or(CsvTime{}).unit_s());
   }
   return std::nullopt;
 }
 
-CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
-                         RowBlock used) {
-  CsvPiece piece;
-  piece.rows = std::move(used);
+void parse(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps) {
+  CsvPiece fresh;
+  fresh.text = std::move(piece.text), fresh.rows = std::move(piece.rows);
+  piece = std::move(fresh);
   piece.rows.origin = stamps.origin();
+  const std::string_view text = piece.text;
   // Estimates the number of rows from the first row's length, at least one byte per column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   Rows rows(piece, header, stamps, text.size() / length + text.size() / length / 16 + 1);
@@ -281,7 +286,6 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
     }
   }
   piece.lines = lines.number();
-  return piece;
 }
 
 }  // namespace ifog

@@ -13,7 +13,9 @@
 
 namespace ifog {
 
+// A reused piece keeps the memory of its text and rows, because new pages cost as much as reading.
 struct CsvPiece {
+  std::string text;               // whole lines
   RowBlock rows;                  // times since the stamps' origin; values in the file's units
   std::string comments;           // as in RowNotes
   std::vector<Fault> impossible;  // by column: impossible values, read as missing
@@ -29,10 +31,9 @@ struct CsvPiece {
 // Stamps relative to the text's first time; nullopt if it has no row.
 std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header);
 
-// text: whole lines. stamps: of the whole file. Equidistant rows have their numbers as times. used: a block
-// whose memory is reused. Line numbers start at 1 in each piece. Invalid rows are dropped and counted;
-// parsing stops at a line that is too long.
-CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
-                         RowBlock used = {});
+// Parses the piece's text and replaces the rest of it. stamps: of the whole file. Equidistant rows have their
+// numbers as times. Line numbers start at 1 in each piece. Invalid rows are dropped and counted; parsing stops
+// at a line that is too long.
+void parse(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps);
 
 }  // namespace ifog

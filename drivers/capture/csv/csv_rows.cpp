@@ -36,26 +36,25 @@ class CsvRows {
         layout_(layout),
         sink_(sink),
         has_lines_(rows == RowsAre::lines),
-        file_(file) {}
+        file_(file) {
+    notes_.path = path;
+  }
 
   RowNotes read() {
     in_order(begin());
     tell_damaged();
-    if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
+    if (checks_->rows() == 0) notes_.refuse(0, "no rows after the header");
     if (so_far_.untimed > 0)
-      notes_.notices.push_back(path_ + ": " + std::to_string(so_far_.untimed) + " rows without " +
-                               in_quotes(header_.cells[header_.time_place]) +
-                               " are of another sensor and dropped");
+      notes_.notice(0, std::to_string(so_far_.untimed) + " rows without " +
+                           in_quotes(header_.cells[header_.time_place]) +
+                           " are of another sensor and dropped");
     checks_->finish(impossible_);
     return std::move(notes_);
   }
 
  private:
-  // Its memory is reused, because new pages cost as much as reading.
-  struct Piece {
-    std::string text;
-    RowBlock rows;
-    std::future<CsvPiece> parsed;
+  struct Piece : CsvPiece {
+    std::future<void> parsed;
   };
 
   // Beginning of the text, independent of how it is read.
@@ -67,7 +66,7 @@ class CsvRows {
       if (!piece.starts_with('#')) plain += piece.size();
     }
     const std::string other = foreign_text(std::string_view(head).substr(0, InputFile::kHead));
-    if (!other.empty()) fail_at(path_, 0, other);
+    if (!other.empty()) notes_.refuse(0, other);
     if (head.starts_with("\xEF\xBB\xBF")) head.erase(0, 3);  // byte-order mark
     return head;
   }
@@ -81,11 +80,11 @@ class CsvRows {
     Lines lines(text);
     for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
     so_far_.lines = has_lines_ ? lines.number() : 0;
-    notes_.comments = std::move(header_.comments);
+    for (const std::string& comment : header_.sample.comments) notes_.comments += comment + '\n';
     notes_.header_line = so_far_.lines;
-    notes_.notices = std::move(header_.notices);
+    for (const std::string& notice : header_.notices) notes_.notice(0, notice);
     impossible_.resize(header_.columns.size());
-    checks_.emplace(path_, header_.layout, header_.columns, sink_, notes_);
+    checks_.emplace(header_.layout, header_.columns, sink_, notes_);
     std::vector<std::string> names;
     for (const FileColumn& column : header_.columns) names.push_back(column.name);
     sink_.begin(names);
@@ -106,15 +105,15 @@ class CsvRows {
       else if (!form_.is_plain())
         piece.text = form_.rows_of(piece.text);
       if (!stamps_) stamps_ = stamps_from(piece.text, header_);  // common origin of all pieces
-      parse(piece);
+      begin_to_parse(piece);
       ++begun;
     }
     while (done < begun) deliver(ring[done++ % ring.size()]);
   }
 
-  void parse(Piece& piece) {
+  void begin_to_parse(Piece& piece) {
     const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())] {
-      return parse_csv_piece(piece.text, header_, stamps, std::move(piece.rows));
+      parse(piece, header_, stamps);
     };
     const bool worth = piece.text.size() >= kWorthAThread;
     try {
@@ -125,21 +124,20 @@ class CsvRows {
   }
 
   void deliver(Piece& piece) {
-    CsvPiece parsed = piece.parsed.get();
-    if (parsed.too_long.count > 0)
-      refuse_long_line(path_, so_far_.lines + parsed.too_long.line, parsed.too_long.first);
-    notes_.comments += parsed.comments;
+    piece.parsed.get();
+    if (piece.too_long.count > 0)
+      refuse_long_line(path_, so_far_.lines + piece.too_long.line, piece.too_long.first);
+    notes_.comments += piece.comments;
     for (std::size_t c = 0; c < impossible_.size(); ++c)
-      impossible_[c].append(parsed.impossible[c], so_far_.lines);
-    damaged_.append(parsed.damaged, so_far_.lines);
-    unended_.append(parsed.unended, so_far_.lines);
-    piece.rows = std::move(parsed.rows);
+      impossible_[c].append(piece.impossible[c], so_far_.lines);
+    damaged_.append(piece.damaged, so_far_.lines);
+    unended_.append(piece.unended, so_far_.lines);
     RowBlock& rows = piece.rows;
     for (std::size_t& line : rows.lines) line += so_far_.lines;
-    so_far_.lines += parsed.lines;
-    so_far_.untimed += parsed.untimed;
-    const std::size_t places = std::exchange(so_far_.places, so_far_.places + parsed.places);
-    if (file_ != nullptr) file_->were_rows(parsed.row_bytes);
+    so_far_.lines += piece.lines;
+    so_far_.untimed += piece.untimed;
+    const std::size_t places = std::exchange(so_far_.places, so_far_.places + piece.places);
+    if (file_ != nullptr) file_->were_rows(piece.row_bytes);
     // limit after which the search ends
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
@@ -156,8 +154,8 @@ class CsvRows {
     for (const auto& [found, few] :
          {std::pair{&damaged_, rows >= kRowsAFault * damaged_.count}, {&unended_, rows > 0}}) {
       if (found->count == 0) continue;
-      if (!few) fail_at(path_, found->line, found->first);
-      notes_.faults.push_back(found->dropped(path_, "line"));
+      if (!few) notes_.refuse(found->line, found->first);
+      notes_.dropped(*found, "line");
     }
   }
 
@@ -190,8 +188,7 @@ RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) 
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); };
   RowNotes notes = CsvRows(read, kTextPiece, file.path(), layout, sink, RowsAre::lines, &file).read();
   if (file.ends_early())
-    notes.faults.push_back(file.path() +
-                           ": the gzip stream ends early (truncated file); the rows until there are read");
+    notes.fault(0, "the gzip stream ends early (truncated file); the rows until there are read");
   return notes;
 }
 

@@ -17,7 +17,7 @@ enum class RowsAre { lines, numbered };
 
 // Throws std::runtime_error with one line: file, line, column, value, what was expected, or the options that read the
 // file. Errors: time not increasing, a cell that is no number, a line with another number of cells, more than 1 %
-// impossible values in a column. Fewer become missing (measurable.h) and are listed in `faults`. The sink may have
+// impossible values in a column. Fewer become missing (Measurable) and are listed in `faults`. The sink may have
 // received rows before an error is found; angles that become rates arrive as one block.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece = kTextPiece, RowsAre rows = RowsAre::lines);

@@ -264,8 +264,8 @@ std::vector<std::vector<std::string>> first_cells(const Grid& grid, Notation by,
     if (row.comment || !row.is_as_wide(columns)) continue;
     for (std::size_t c = 0; c < columns; ++c) {
       const std::string cell = c < row.cells.size() && !is_no_number(row.cells[c]) ? row.cells[c] : "";
-      const TimeDigits digits(cell, by);
-      cells[c].emplace_back(digits.is_date() ? std::string_view(cell) : std::string_view(digits));
+      const PointDigits digits(cell, by);
+      cells[c].emplace_back(is_date(cell) ? std::string_view(cell) : std::string_view(digits));
     }
   }
   return cells;

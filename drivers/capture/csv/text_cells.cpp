@@ -2,9 +2,11 @@
 #include "drivers/capture/csv/text_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <system_error>
 #include <utility>
 
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"
@@ -129,7 +131,7 @@ bool is_no_number(std::string_view cell) {
 
 bool is_value(std::string_view cell, char separator) {
   if (is_date(cell)) return true;
-  const TimeDigits digits(cell, {separator != ','});
+  const PointDigits digits(cell, {separator != ','});
   const std::string_view text = digits;
   double value = 0.0;
   const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "drivers/capture/times/text_cursor.h"
@@ -23,13 +25,8 @@ bool month_name(TextCursor& rest, int& value) {
   return false;
 }
 
-struct Moment {
-  std::int64_t s = 0;
-  std::string_view fraction;  // decimal digits
-};
-
 // hh:mm, hh:mm:ss or hh:mm:ss.f…, in twelve hours with AM or PM; mm:ss.f…, as spreadsheets show it
-bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
+bool time_of_day(TextCursor& rest, bool seconds_needed, Decimal& time) {
   int hours = 0, minutes = 0, seconds = 0;
   if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
   bool seconds_given = rest.one_of(":_");
@@ -39,16 +36,16 @@ bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
   } else if (seconds_given ? !rest.number(2, 2, seconds) : seconds_needed)
     return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
-  if (seconds_given && rest.one_of(".,")) {
-    moment.fraction = rest.digits();
-    if (moment.fraction.empty()) return false;
-  }
+  std::optional<Decimal> fraction = Decimal{};
+  if (seconds_given && rest.one_of(".,")) fraction = Decimal::parse("." + std::string(rest.digits()));
+  if (!fraction) return false;
   const bool after_noon = rest.text(" PM") || rest.text(" pm");
   if (after_noon || rest.text(" AM") || rest.text(" am")) {
     if (hours < 1 || hours > 12) return false;
     hours = hours % 12 + (after_noon ? 12 : 0);
   }
-  moment.s += (hours * 60 + minutes) * 60 + seconds;
+  time = {(time.value + (hours * 60 + minutes) * 60 + seconds) * ten_to(fraction->decimals) + fraction->value,
+          fraction->decimals};
   return true;
 }
 
@@ -90,41 +87,63 @@ std::optional<std::int64_t> offset_s(TextCursor& rest) {
   return behind ? -by_s : by_s;
 }
 
-std::optional<Moment> moment_of(std::string_view text, DateOrder order) {
-  Moment moment;
-  TextCursor rest(text);
-  if (text.size() > 2 && (text[1] == ':' || text[2] == ':'))
-    return time_of_day(rest, true, moment) && rest.done() ? std::optional(moment) : std::nullopt;
-  const auto day = day_of(rest, order);
-  if (!day) return std::nullopt;
-  moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
-  if (rest.done()) return moment;
-  if (!rest.one_of("Tt _") || !time_of_day(rest, false, moment)) return std::nullopt;
-  const auto ahead_s = offset_s(rest);
-  if (!ahead_s || !rest.done()) return std::nullopt;
-  moment.s -= *ahead_s;
-  return moment;
-}
-
 }  // namespace
 
-std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to, DateOrder order) {
-  constexpr std::size_t kWhole = 24;  // characters
+std::optional<Decimal> Decimal::parse(std::string_view text, int most) {
+  Decimal out;
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view behind = text.substr(std::min(point + 1, text.size()));
+  if (point + behind.size() == 0 || point > 19 || std::ssize(behind) > most) return std::nullopt;
+  for (const std::string_view digits : {text.substr(0, point), behind})
+    for (const char c : digits) {
+      if (c < '0' || c > '9') return std::nullopt;
+      out.value = 10 * out.value + (c - '0');
+    }
+  if (negative) out.value = -out.value;
+  out.decimals = static_cast<int>(behind.size());
+  return out;
+}
+
+Int128 Decimal::with(int wanted) const {
+  if (wanted >= decimals) return value * ten_to(wanted - decimals);
+  const Int128 unit = ten_to(decimals - wanted);
+  return value / unit - (value % unit < 0 ? 1 : 0);
+}
+
+double Decimal::in_double() const {
+  return static_cast<double>(value) / static_cast<double>(ten_to(decimals));
+}
+
+Int128 ten_to(int exponent) {
+  constexpr auto kPowers = [] {
+    std::array<Int128, 38> powers{1};
+    for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+    return powers;
+  }();
+  return kPowers[static_cast<std::size_t>(exponent)];
+}
+
+std::optional<Decimal> date_time(std::string_view text, DateOrder order) {
   // Fast rejection of plain numbers: none has one of these near its beginning, or two points.
   const std::string_view begin = text.substr(0, 6);
   if (text.size() < 5 ||
       (begin.find_first_of(":/-_", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
-    return {};
-  auto moment = moment_of(text, order);
-  if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
-  // Before 1970 decimal digits would have to count backwards.
-  if (moment->s < 0 && !moment->fraction.empty()) return {};
-  char* end = std::to_chars(to.data(), to.data() + kWhole, moment->s).ptr;
-  if (!moment->fraction.empty()) {
-    *end++ = '.';
-    end = std::copy(moment->fraction.begin(), moment->fraction.end(), end);
-  }
-  return {to.data(), static_cast<std::size_t>(end - to.data())};
+    return std::nullopt;
+  Decimal time;
+  TextCursor rest(text);
+  if (text[1] == ':' || text[2] == ':')
+    return time_of_day(rest, true, time) && rest.done() ? std::optional(time) : std::nullopt;
+  const auto day = day_of(rest, order);
+  if (!day) return std::nullopt;
+  time.value = std::chrono::sys_seconds(*day).time_since_epoch().count();
+  if (rest.done()) return time;
+  if (!rest.one_of("Tt _") || !time_of_day(rest, false, time)) return std::nullopt;
+  const auto ahead_s = offset_s(rest);
+  if (!ahead_s || !rest.done()) return std::nullopt;
+  time.value -= *ahead_s * ten_to(time.decimals);
+  return time;
 }
 
 std::optional<double> finite_number(std::string_view text) {
@@ -163,12 +182,6 @@ PointDigits::PointDigits(std::string_view cell, Notation by) : digits_(cell) {
     if (minus) i += typographic.size() - 1;
   }
   digits_ = {made_.data(), static_cast<std::size_t>(end - made_.data())};
-}
-
-TimeDigits::TimeDigits(std::string_view cell, Notation by, DateOrder order) : PointDigits(cell, by) {
-  const std::string_view date = date_in_digits(cell, made_, order);
-  date_ = !date.empty();
-  if (date_) digits_ = date;
 }
 
 }  // namespace ifog

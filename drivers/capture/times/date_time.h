@@ -1,33 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts dates (ISO 8601, RFC 3339, …) to decimal digits of seconds, which are parsed as numbers without
-// losing digits.
+// Numbers and dates (ISO 8601, RFC 3339, …) in text as decimal numbers, without losing digits.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string_view>
 
 namespace ifog {
 
-inline constexpr std::size_t kLongestDate = 64;
+__extension__ typedef __int128 Int128;
+
+// value / 10^decimals.
+struct Decimal {
+  Int128 value = 0;
+  int decimals = 0;
+
+  // Of plain digits, as in "-12.5", with at most 19 before the point and `most` behind it; nullopt otherwise.
+  [[nodiscard]] static std::optional<Decimal> parse(std::string_view text, int most = 18);
+  // The value with so many decimals; fewer ones are cut off, towards minus infinity.
+  [[nodiscard]] Int128 with(int wanted) const;
+  [[nodiscard]] double in_double() const;
+};
+[[nodiscard]] Int128 ten_to(int exponent);
 
 // Of "5/1/2026". either: month first, if that is a date.
 enum class DateOrder { either, month_first, day_first };
 
-// Seconds since 1970 of "2026-05-01T12:00:00.25Z" as digits in `to`; empty if the text is no date. Accepted:
-// date and time or date alone; "/" or "_" for "-"; the year last, as in "1.5.2026" (day first) and "5/1/2026"
-// (by `order`); month names as in "01-May-2026"; a space or "_" for "T"; "_" for ":"; AM or PM; missing
-// seconds; a decimal comma; offsets "+02:00", "+0200", "+02", "UTC" (default UTC). A time of day alone gives
-// seconds since midnight. A leap second counts as the next second.
-std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to,
-                                DateOrder order = DateOrder::either);
-
-[[nodiscard]] inline bool is_date(std::string_view text) {
-  std::array<char, kLongestDate> digits;
-  return !date_in_digits(text, digits).empty();
-}
+// Seconds since 1970 of "2026-05-01T12:00:00.25Z"; nullopt if the text is no date. Accepted: date and time or date
+// alone; "/" or "_" for "-"; the year last, as in "1.5.2026" (day first) and "5/1/2026" (by `order`); month names
+// as in "01-May-2026"; a space or "_" for "T"; "_" for ":"; AM or PM; missing seconds; a decimal comma; offsets
+// "+02:00", "+0200", "+02", "UTC" (default UTC). A time of day alone gives seconds since midnight. A leap second
+// counts as the next second.
+[[nodiscard]] std::optional<Decimal> date_time(std::string_view text, DateOrder order = DateOrder::either);
+[[nodiscard]] inline bool is_date(std::string_view text) { return date_time(text).has_value(); }
 
 // The number if the whole text is a finite number; else nullopt.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
@@ -51,19 +57,9 @@ class PointDigits {
   PointDigits& operator=(const PointDigits&) = delete;
   operator std::string_view() const { return digits_; }
 
- protected:
-  std::array<char, kLongestDate> made_;
-  std::string_view digits_;
-};
-
-// Cell of a time: digits of a date or of a number.
-class TimeDigits : public PointDigits {
- public:
-  TimeDigits(std::string_view cell, Notation by, DateOrder order = DateOrder::either);
-  [[nodiscard]] bool is_date() const { return date_; }
-
  private:
-  bool date_ = false;
+  std::array<char, 64> made_;
+  std::string_view digits_;
 };
 
 }  // namespace ifog

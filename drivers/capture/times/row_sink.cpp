@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <stdexcept>
 
 namespace ifog {
 
@@ -71,6 +72,22 @@ void RowBlock::split_off(std::size_t from, RowBlock& to) {
   behind(lines, to.lines);
   behind(cells, to.cells);
   for (std::size_t c = 0; c < columns.size(); ++c) behind(columns[c], to.columns[c]);
+}
+
+std::string RowNotes::at(std::size_t line, const std::string& what) const {
+  return path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what;
+}
+
+void RowNotes::dropped(const Fault& found, const std::string& kind) {
+  const std::size_t count = found.count;
+  fault(found.line,
+        found.first + "; " +
+            (count == 1 ? "this " + kind + " is" : std::to_string(count) + " such " + kind + "s are") +
+            " dropped");
+}
+
+void RowNotes::refuse(std::size_t line, const std::string& what) const {
+  throw std::runtime_error(at(line, what));
 }
 
 void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {

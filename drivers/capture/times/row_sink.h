@@ -39,12 +39,6 @@ struct Fault {
     if (count == 0) line = lines + piece.line, first = piece.first;
     count += piece.count;
   }
-  // "PATH:LINE: FIRST; 3 such rows are dropped"; kind: "row".
-  [[nodiscard]] std::string dropped(const std::string& path, const std::string& kind) const {
-    return path + ":" + std::to_string(line) + ": " + first + "; " +
-           (count == 1 ? "this " + kind + " is" : std::to_string(count) + " such " + kind + "s are") +
-           " dropped";
-  }
 };
 
 // Consecutive rows, by column.
@@ -99,12 +93,21 @@ struct RowNotes {
     std::size_t row, line;
   };
 
+  std::string path;                        // of the file, for messages
   std::string comments;                    // without the '#', each with a line end
   std::size_t header_line = 0;             // 0: not from a text
   std::vector<Lines> lines;                // empty: rows have no lines; rows of HDF5 count from 1
   std::vector<std::string> notices;        // about ambiguous content
   std::vector<std::string> faults;         // cells read as missing, one line per column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, if known
+
+  // "PATH:LINE: WHAT"; without LINE if it is 0.
+  [[nodiscard]] std::string at(std::size_t line, const std::string& what) const;
+  void notice(std::size_t line, const std::string& what) { notices.push_back(at(line, what)); }
+  void fault(std::size_t line, const std::string& what) { faults.push_back(at(line, what)); }
+  // Of dropped lines or rows: "FIRST; 3 such rows are dropped"; kind: "row".
+  void dropped(const Fault& found, const std::string& kind);
+  [[noreturn]] void refuse(std::size_t line, const std::string& what) const;
 
   // Line of a data row (counted from 0), for messages; 0 without lines.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;

@@ -9,50 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr int kExactPower = 15;  // powers of ten up to this, and integers below 2^53, are exact doubles
-constexpr double kWholeDoubles = 9007199254740992.0;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::int64_t kMostWhole = 4'600'000'000'000'000'000;  // differences of two fit into 64 bits
-
-constexpr std::array<std::int64_t, 19> kTen = [] {
-  std::array<std::int64_t, 19> powers{1};
-  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
-  return powers;
-}();
-std::int64_t ten_to(int decimals) { return kTen[static_cast<std::size_t>(decimals)]; }
-
-// whole + fraction / 10^decimals, both with the number's sign.
-struct Plain {
-  std::int64_t whole = 0, fraction = 0;
-  int decimals = 0;
-};
-
-// Reads up to `most` digits; returns their number.
-int take_digits(const char*& at, const char* end, int most, std::int64_t& value) {
-  int digits = 0;
-  for (; at != end && *at >= '0' && *at <= '9' && digits < most; ++at, ++digits)
-    value = 10 * value + (*at - '0');
-  return digits;
-}
-
-bool read_plain(std::string_view text, Plain& out) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const bool negative = at != end && *at == '-';
-  if (at != end && (*at == '-' || *at == '+')) ++at;
-  int digits = take_digits(at, end, 18, out.whole);
-  if (at != end && *at >= '0' && *at <= '9' && out.whole < kMostWhole / 10)
-    digits += take_digits(at, end, 1, out.whole);
-  if (at != end && *at == '.') digits += out.decimals = take_digits(++at, end, 18, out.fraction);
-  if (at != end || digits == 0) return false;
-  if (negative) out.whole = -out.whole, out.fraction = -out.fraction;
-  return true;
-}
-
-std::int64_t floor_to(std::int64_t value, std::int64_t unit) {
-  const std::int64_t over = value % unit;
-  return value - over - (over < 0 ? unit : 0);
-}
 
 // The value if it is an integer, else 0.
 std::int64_t whole(double value) {
@@ -60,30 +17,25 @@ std::int64_t whole(double value) {
   return nearest >= 1.0 && std::abs(value / nearest - 1.0) < 1e-12 ? static_cast<std::int64_t>(nearest) : 0;
 }
 
-// Decimal digits of one minus the fraction: 0.75 for 0.25. Not for zero.
-void complement(std::string& digits) {
-  for (char& digit : digits) digit = static_cast<char>('0' + '9' - digit);
-  digits.back() = static_cast<char>(digits.back() + 1);
-}
-
-// Adds ns to decimal digits, without trailing zeros; true on carry.
-bool add_ns(std::string& digits, std::int64_t ns) {
-  constexpr std::size_t kOfNs = 9;
-  if (ns == 0) return false;
-  if (digits.size() < kOfNs) digits.resize(kOfNs, '0');
-  std::int64_t carry = ns;
-  for (std::size_t i = kOfNs; i-- > 0; carry /= 10) {
-    carry += digits[i] - '0';
-    digits[i] = static_cast<char>('0' + carry % 10);
-  }
-  digits.erase(digits.find_last_not_of('0') + 1);
-  return carry > 0;
+// Decimal digits of one ns in a unit of which so many are a second; nullopt if that is no power of ten.
+std::optional<int> decimals_of_ns(std::int64_t units_a_second) {
+  for (int decimals = 0; decimals <= 9; ++decimals)
+    if (ten_to(9 - decimals) == units_a_second) return decimals;
+  return std::nullopt;
 }
 
 // Day number of 1970-01-01: MATLAB counts from the year 0, spreadsheets from 1899-12-30, others from 1970.
-std::int64_t day_of_1970(double unit_s, std::int64_t day) {
+std::int64_t day_of_1970(double unit_s, Int128 day) {
   if (unit_s != 86'400.0) return 0;
   return day >= 700'000 ? 719'529 : day >= 36'526 ? 25'569 : 0;
+}
+
+// Appends a positive number with leading zeros.
+void append_digits(std::string& out, Int128 number, int width) {
+  constexpr int kAtOnce = 18;
+  if (width > kAtOnce) append_digits(out, number / ten_to(kAtOnce), width - kAtOnce);
+  const std::string digits = std::to_string(static_cast<std::uint64_t>(number % ten_to(kAtOnce)));
+  out.append(static_cast<std::size_t>(std::min(width, kAtOnce)) - digits.size(), '0').append(digits);
 }
 
 }  // namespace
@@ -95,36 +47,26 @@ TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
 }
 
 std::optional<SaidTime> SaidTime::parse(std::string_view said) {
-  const TimeDigits digits(said, {});
-  const std::string_view text = digits;
-  if (Plain time; read_plain(text, time))
-    return SaidTime{static_cast<double>(time.whole),
-                    static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};
-  const std::optional<double> value = finite_number(text);
+  const PointDigits digits(said, {});
+  const auto date = date_time(said), exact = date ? date : Decimal::parse(digits);
+  if (exact)
+    return SaidTime{static_cast<double>(exact->value / ten_to(exact->decimals)),
+                    Decimal{exact->value % ten_to(exact->decimals), exact->decimals}.in_double()};
+  const std::optional<double> value = finite_number(digits);
   return value ? std::optional(SaidTime{*value, 0.0}) : std::nullopt;
 }
 
-TimeStamps::TimeStamps(std::string_view first, double unit_s)
+TimeStamps::TimeStamps(std::optional<Decimal> first, double unit_s)
     : unit_s_(unit_s), units_a_second_(whole(1.0 / unit_s)) {
-  Plain time;
-  if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
-  const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
-  // Units per second as a power of ten
-  const auto part = std::find(kTen.begin(), kTen.begin() + 10, units_a_second_);
-  if (part != kTen.begin() + 10 && *part > 0) {
-    const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
-    whole_ = below;
-    decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of one ns in this unit
-    const std::int64_t fraction = time.fraction < 0 ? ten_to(time.decimals) + time.fraction : time.fraction;
-    fraction_ = time.decimals > decimals_ ? fraction / ten_to(time.decimals - decimals_)
-                                          : fraction * ten_to(decimals_ - time.decimals);
-    origin_.s = floor_to(below, of_second) / of_second;
-    origin_.ns = (below - floor_to(below, of_second)) * ns_a_unit + fraction_;
-    for (; decimals_ > 0 && fraction_ % 10 == 0; --decimals_) fraction_ /= 10;
-  } else if (const std::int64_t seconds = whole(unit_s);
-             seconds != 0 && std::abs(below) < kMostWhole / seconds) {
-    whole_ = below;
-    origin_.s = (below - day_of_1970(unit_s, below)) * seconds;
+  constexpr double kMost_s = 9e9, kMostFromYear0_s = 1e12;  // of int64 in ns; of days in MATLAB
+  const double first_s = first ? std::abs(first->in_double()) * unit_s : 0.0;
+  if (first_s < kFineTimes_s || first_s > kMostFromYear0_s) return;
+  if (const auto decimals = decimals_of_ns(units_a_second_); decimals && first_s < kMost_s) {
+    base_ = {first->with(*decimals), *decimals};
+    origin_ = TimeOrigin::of(static_cast<std::int64_t>(base_.value));
+  } else if (const std::int64_t seconds = whole(unit_s); seconds != 0) {
+    base_ = {first->with(0), 0};
+    origin_.s = static_cast<std::int64_t>(base_.value - day_of_1970(unit_s, base_.value)) * seconds;
   }
 }
 
@@ -135,47 +77,46 @@ double TimeStamps::seconds(double value, double parts_of_unit) const {
 }
 
 double TimeStamps::since(double absolute) const {
-  const double beyond = static_cast<double>(fraction_) / static_cast<double>(ten_to(decimals_));
-  return seconds(absolute - static_cast<double>(whole_) - beyond, 1.0);
+  const Int128 one = ten_to(base_.decimals), whole = base_.value / one;
+  const double beyond = Decimal{base_.value % one, base_.decimals}.in_double();
+  return seconds(absolute - static_cast<double>(whole) - beyond, 1.0);
 }
 
-bool TimeStamps::since(std::string_view text, double& value) const {
-  Plain time;
-  if (!read_plain(text, time)) return false;
-  const int behind = std::max(time.decimals, decimals_);
-  const std::int64_t since = time.whole - whole_;
-  const std::int64_t fraction =
-      time.fraction * ten_to(behind - time.decimals) - fraction_ * ten_to(behind - decimals_);
-  const auto ten = static_cast<double>(ten_to(behind));
+std::optional<double> TimeStamps::since(const Decimal& time) const {
+  constexpr int kExactPower = 15;  // powers of ten up to this, and integers below 2^53, are exact doubles
+  constexpr double kWholeDoubles = 9007199254740992.0;
+  const Decimal later{time.with(std::max(time.decimals, base_.decimals)) -
+                          base_.with(std::max(time.decimals, base_.decimals)),
+                      std::max(time.decimals, base_.decimals)};
+  const auto parts = static_cast<double>(later.value), one = static_cast<double>(ten_to(later.decimals));
   // Then only one division rounds.
-  if (behind <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 2.0) {
-    value = seconds(static_cast<double>(since * ten_to(behind) + fraction), ten);
-    return true;
-  }
-  if (origin_ == TimeOrigin{}) return false;
-  value = seconds(static_cast<double>(since) + static_cast<double>(fraction) / ten, 1.0);
-  return true;
+  if (later.decimals <= kExactPower && std::abs(parts) < kWholeDoubles) return seconds(parts, one);
+  if (origin_ == TimeOrigin{}) return std::nullopt;
+  return seconds(later.in_double(), 1.0);
 }
 
 void append_time(std::string& out, const TimeOrigin& origin, double since_s) {
-  const double below_s = std::floor(since_s);
-  std::array<char, 400> text{};
-  // Digits of the absolute value.
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), std::abs(since_s), std::chars_format::fixed);
-  (void)error;  // 400 characters suffice for any double
-  char* const point = std::find(text.data(), end, '.');
-  std::string fraction(point == end ? end : point + 1, end);
-  if (since_s < 0.0 && !fraction.empty()) complement(fraction);
-  const std::int64_t seconds =
-      origin.s + static_cast<std::int64_t>(below_s) + (add_ns(fraction, origin.ns) ? 1 : 0);
-  if (seconds >= 0 || fraction.empty()) {
-    out += std::to_string(seconds);
-  } else {
-    out += '-' + std::to_string(-(seconds + 1));
-    complement(fraction);
+  constexpr int kMostDecimals = 27;
+  std::array<char, 400> text{};  // suffices for any double
+  const char* const end =
+      std::to_chars(text.data(), text.data() + text.size(), since_s + 0.0, std::chars_format::fixed).ptr;
+  const std::string_view digits(text.data(), static_cast<std::size_t>(end - text.data()));
+  const auto since = Decimal::parse(
+      digits.substr(0, std::min(digits.find('.'), digits.size()) + 1 + kMostDecimals), kMostDecimals);
+  if (origin == TimeOrigin{} || !since) {
+    out += digits;
+    return;
   }
-  if (!fraction.empty()) (out += '.') += fraction;
+  const int decimals = std::max(since->decimals, 9);
+  const Decimal from{Int128{origin.s} * kNsPerSecond + origin.ns, 9};
+  Int128 time = from.with(decimals) + since->with(decimals);
+  if (time < 0) out += '-';
+  if (time < 0) time = -time;
+  out += std::to_string(static_cast<std::uint64_t>(time / ten_to(decimals)));
+  out += '.';
+  append_digits(out, time % ten_to(decimals), decimals);
+  out.erase(out.find_last_not_of('0') + 1);
+  if (out.back() == '.') out.pop_back();
 }
 
 }  // namespace ifog

@@ -61,12 +61,12 @@ struct SaidTime {
 class TimeStamps {
  public:
   TimeStamps() = default;
-  // first: a time that is not after any other; may be no number. unit_s: seconds per unit.
-  TimeStamps(std::string_view first, double unit_s);
+  // first: a time that is not after any other. unit_s: seconds per unit.
+  TimeStamps(std::optional<Decimal> first, double unit_s);
 
-  // Seconds since the origin, rounded once. False if the text is no number in plain digits.
-  [[nodiscard]] bool since(std::string_view text, double& value) const;
-  // The same for a parsed time.
+  // Seconds since the origin, rounded once; nullopt if a double of the text is rounded less.
+  [[nodiscard]] std::optional<double> since(const Decimal& time) const;
+  // The same for a double.
   [[nodiscard]] double since(double absolute) const;
   [[nodiscard]] TimeOrigin origin() const { return origin_; }
 
@@ -75,9 +75,7 @@ class TimeStamps {
 
   double unit_s_ = 1.0;
   std::int64_t units_a_second_ = 1;  // 0: not a whole number
-  // In the text's unit: whole_ + fraction_ / 10^decimals_.
-  std::int64_t whole_ = 0, fraction_ = 0;
-  int decimals_ = 0;
+  Decimal base_;                     // the origin, in the text's unit
   TimeOrigin origin_;
 };
 

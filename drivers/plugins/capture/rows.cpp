@@ -2,6 +2,8 @@
 #include "drivers/plugins/capture/rows.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -36,30 +38,21 @@ bool parse(std::string_view cell, double& value) {
   return error == std::errc() && end == cell.data() + cell.size() && !std::isinf(value);
 }
 
-// Parses seconds in plain digits to ns, which a double could not resolve; false otherwise.
+// Nanoseconds of a number of seconds in plain digits, which a double could not resolve; false if it has others.
 bool nanoseconds_in(std::string_view cell, std::int64_t& ns) {
-  constexpr std::int64_t kMost = 900'000'000'000'000'000;  // one more digit fits
   const bool negative = cell.starts_with('-');
   if (negative || cell.starts_with('+')) cell.remove_prefix(1);
-  std::int64_t size = 0;
-  int decimals = -1;  // decimal digits, after the point
-  for (const char c : cell) {
-    if (c == '.' && decimals < 0) {
-      decimals = 0;
-    } else if (c < '0' || c > '9' || (decimals < 9 && size > kMost)) {
-      return false;
-    } else if (decimals < 9) {
-      size = 10 * size + (c - '0');
-      if (decimals >= 0) ++decimals;
-    } else if (decimals++ == 9 && c >= '5') {
-      ++size;
-    }
-  }
-  for (decimals = std::max(decimals, 0); decimals < 9; ++decimals) {
-    if (size > kMost) return false;
-    size *= 10;
-  }
-  ns = negative ? -size : size;
+  if (cell.find_first_not_of(".0123456789") != std::string_view::npos) return false;
+  const std::size_t point = std::min(cell.find('.'), cell.size());
+  const std::string_view behind = cell.substr(std::min(point + 1, cell.size()));
+  std::array<char, 10> tenths{};  // of a ns
+  tenths.fill('0');
+  std::copy_n(behind.begin(), std::min(behind.size(), tenths.size()), tenths.begin());
+  std::int64_t whole = 0, part = 0;
+  std::from_chars(cell.data(), cell.data() + point, whole);
+  std::from_chars(tenths.data(), tenths.data() + tenths.size(), part);
+  ns = whole * 1'000'000'000 + (part + 5) / 10;
+  if (negative) ns = -ns;
   return true;
 }
 
@@ -69,7 +62,7 @@ Rows::Rows(std::vector<std::string> wanted)
     : wanted_(std::move(wanted)), values_(wanted_.size()), line_(kLongestLine) {}
 
 void Rows::restart() noexcept {
-  counters_.skipped += length_ + overlong_;
+  counters_.bytes_skipped += length_ + overlong_;
   length_ = overlong_ = 0;
   columns_ = 0;
   timed_ = false;
@@ -82,12 +75,12 @@ bool Rows::end_line() noexcept {
   const bool remark = beyond == 0 && (line.empty() || line.front() == '#');
   const bool row = columns_ > 0;
   if (remark || (beyond == 0 && (row ? read_row(line) : read_header(line)))) {
-    counters_.framed += bytes;
-    counters_.good += row && !remark ? 1 : 0;
+    counters_.bytes_framed += bytes;
+    counters_.frames_good += row && !remark ? 1 : 0;
     return row && !remark;
   }
-  ++counters_.format;
-  counters_.skipped += bytes;
+  ++counters_.frames_format;
+  counters_.bytes_skipped += bytes;
   return false;
 }
 

@@ -37,19 +37,11 @@ std::optional<std::int64_t> nanoseconds(double seconds) {
 }  // namespace
 
 Decoder::Decoder(const Picks& picks) : picks_(picks) {
-  for (const Pick& counter : picks.counter) add(Role::kCounter, 0, counter);
-  for (std::size_t i = 0; i < picks.axes.size(); ++i) add(Role::kAxis, i, picks.axes[i].pick);
-  if (picks.status) add(Role::kStatus, 0, *picks.status);
-  if (picks.time) {
-    add(Role::kTime, 0, *picks.time);
-    const Signal& s = *picks.time->signal;
-    if (is_integer(s.type))
-      sample_.device_wrap_ns =
-          nanoseconds(std::ldexp(std::abs(s.scale), static_cast<int>(s.length)) * picks.seconds_per_unit)
-              .value_or(0);
-  }
-  for (std::size_t i = 0; i < picks.environments.size(); ++i)
-    add(Role::kEnvironment, i, picks.environments[i].pick);
+  picks.each([&](Role role, std::size_t index, const Pick& pick) { add(role, index, pick); });
+  if (const Signal* const s = picks.time ? picks.time->signal : nullptr; s != nullptr && is_integer(s->type))
+    sample_.device_wrap_ns =
+        nanoseconds(std::ldexp(std::abs(s->scale), static_cast<int>(s->length)) * picks.seconds_per_unit)
+            .value_or(0);
   learn_order();
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }

@@ -35,7 +35,6 @@ class Decoder {
   [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
 
  private:
-  enum class Role : std::uint8_t { kAxis, kCounter, kStatus, kTime, kEnvironment };
   struct Entry {
     Role role;
     std::size_t index;  // of the axis or environment channel

@@ -22,12 +22,7 @@ std::uint8_t frame_length(std::uint32_t message_length) {
 }  // namespace
 
 Encoder::Encoder(const Picks& picks) : picks_(picks) {
-  for (std::size_t i = 0; i < picks.axes.size(); ++i) add(Role::kAxis, i, picks.axes[i].pick);
-  for (const Pick& counter : picks.counter) add(Role::kCounter, 0, counter);
-  if (picks.status) add(Role::kStatus, 0, *picks.status);
-  if (picks.time) add(Role::kTime, 0, *picks.time);
-  for (std::size_t i = 0; i < picks.environments.size(); ++i)
-    add(Role::kEnvironment, i, picks.environments[i].pick);
+  picks.each([&](Role role, std::size_t index, const Pick& pick) { add(role, index, pick); });
   std::ranges::stable_sort(layouts_, [](const Layout& a, const Layout& b) {
     if (a.carries_axis != b.carries_axis) return b.carries_axis;
     if (a.message->id != b.message->id) return a.message->id < b.message->id;

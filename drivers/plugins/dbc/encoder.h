@@ -19,7 +19,6 @@ class Encoder {
   void encode(const ifog_sample& sample, ifog_emit_can emit, void* sink);
 
  private:
-  enum class Role : std::uint8_t { kAxis, kCounter, kStatus, kTime, kEnvironment };
   struct Entry {
     Role role;
     std::size_t index;

@@ -34,6 +34,9 @@ struct Environment {
   UnitConversion to_column;
 };
 
+// What a signal is to the sensor.
+enum class Role : std::uint8_t { kAxis, kCounter, kStatus, kTime, kEnvironment };
+
 struct Picks {
   Picks() = default;
   Picks(const Picks&) = delete;
@@ -53,6 +56,16 @@ struct Picks {
   std::vector<Environment> environments;
   double rate_hz = 0.0;
   std::vector<std::string> remarks;  // for the user, a line each
+
+  // Calls use(role, index, pick) for each; index: of the axis or environment channel.
+  template <typename Use>
+  void each(Use&& use) const {
+    for (std::size_t i = 0; i < axes.size(); ++i) use(Role::kAxis, i, axes[i].pick);
+    for (const Pick& one : counter) use(Role::kCounter, std::size_t{0}, one);
+    if (status) use(Role::kStatus, std::size_t{0}, *status);
+    if (time) use(Role::kTime, std::size_t{0}, *time);
+    for (std::size_t i = 0; i < environments.size(); ++i) use(Role::kEnvironment, i, environments[i].pick);
+  }
 };
 
 // Fills `out`. Throws std::exception with one line: errors of the DBC file with file and line; of an option

@@ -38,11 +38,7 @@ class Driver {
     out.environments = static_cast<std::uint32_t>(picks_.environments.size());
     for (std::size_t i = 0; i < picks_.environments.size(); ++i)
       plugin::set_name(out.environment[i], picks_.environments[i].column);
-    for (const Axis& axis : picks_.axes) want(out, axis.pick);
-    for (const Pick& counter : picks_.counter) want(out, counter);
-    if (picks_.status) want(out, *picks_.status);
-    if (picks_.time) want(out, *picks_.time);
-    for (const Environment& environment : picks_.environments) want(out, environment.pick);
+    picks_.each([&](Role, std::size_t, const Pick& pick) { want(out, pick); });
   }
 
  private:

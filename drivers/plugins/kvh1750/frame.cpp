@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/plugins/kvh1750/frame.h"
 
+#include <algorithm>
 #include <bit>
 
-#include "drivers/plugins/framing/crc32_mpeg2.h"
 #include "drivers/plugins/framing/fields.h"
 
 namespace ifog::kvh {
@@ -16,20 +16,10 @@ using Writer = framing::FieldWriter<std::endian::big>;
 
 }  // namespace
 
-std::optional<Format> header_at(std::span<const std::uint8_t> bytes) noexcept {
-  if (bytes[0] != 0xFE || bytes[1] != 0x81 || bytes[2] != 0xFF || bytes[3] < 0x55 || bytes[3] > 0x57)
-    return {};
-  return static_cast<Format>(bytes[3]);
-}
-
-bool crc_fits(std::span<const std::uint8_t> frame) noexcept {
-  const std::size_t covered = frame.size() - kCrcLength;
-  return framing::crc32_mpeg2(frame.first(covered)) == Reader(frame.data() + covered).number(4);
-}
-
-Frame unpack(Format format, std::span<const std::uint8_t> frame) noexcept {
+Frame unpack(std::span<const std::uint8_t> frame) noexcept {
   Reader in(frame.data() + kHeaderLength);
   Frame out;
+  const auto format = static_cast<Format>(frame[kHeaderLength - 1]);
   out.format = format;
   for (float& value : out.gyro) value = in.real();
   for (float& value : out.accelerometer) value = in.real();
@@ -54,6 +44,22 @@ std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> byte
   const std::size_t length = length_of(frame.format);
   out.number(framing::crc32_mpeg2(bytes.first(length - kCrcLength)), 4);
   return length;
+}
+
+framing::Announced Protocol::at(std::span<const std::uint8_t> bytes) noexcept {
+  using Is = framing::Announced::Is;
+  constexpr std::array<std::uint8_t, kHeaderLength - 1> kBegin{kFirst, 0x81, 0xFF};
+  const std::size_t n = std::min(bytes.size(), kBegin.size());
+  if (!std::equal(kBegin.begin(), kBegin.begin() + n, bytes.begin())) return {};
+  if (bytes.size() < kHeaderLength) return {Is::unknown_yet};
+  const std::uint8_t last = bytes[kHeaderLength - 1];
+  return last >= 0x55 && last <= 0x57 ? framing::Announced{Is::frame, length_of(static_cast<Format>(last))}
+                                      : framing::Announced{};
+}
+
+bool Protocol::intact(std::span<const std::uint8_t> frame) noexcept {
+  const std::size_t covered = frame.size() - kCrcLength;
+  return framing::crc32_mpeg2(frame.first(covered)) == Reader(frame.data() + covered).number(4);
 }
 
 }  // namespace ifog::kvh

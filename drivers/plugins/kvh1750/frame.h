@@ -13,8 +13,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
+
+#include "drivers/plugins/framing/frame_finder.h"
 
 namespace ifog::kvh {
 
@@ -46,16 +47,19 @@ constexpr std::size_t length_of(Format format) {
   return format == Format::kA ? 36 : format == Format::kB ? 40 : 38;
 }
 
-// Format by the first four bytes; nullopt if they are no header. At least kHeaderLength bytes.
-std::optional<Format> header_at(std::span<const std::uint8_t> bytes) noexcept;
-
-// True if the frame's last four bytes are the CRC of those before.
-bool crc_fits(std::span<const std::uint8_t> frame) noexcept;
-
-// Reads the fields of length_of(format) bytes with valid header and CRC.
-Frame unpack(Format format, std::span<const std::uint8_t> frame) noexcept;
+// Reads an intact frame.
+Frame unpack(std::span<const std::uint8_t> frame) noexcept;
 
 // Writes the frame with its CRC; returns its length.
 std::size_t pack(const Frame& frame, std::span<std::uint8_t, kLongestFrame> out);
+
+// For the finder of intact frames.
+struct Protocol {
+  static constexpr std::size_t kLongest = kLongestFrame;
+  static constexpr std::uint8_t kFirst = 0xFE;
+
+  [[nodiscard]] static framing::Announced at(std::span<const std::uint8_t> bytes) noexcept;
+  [[nodiscard]] static bool intact(std::span<const std::uint8_t> frame) noexcept;
+};
 
 }  // namespace ifog::kvh

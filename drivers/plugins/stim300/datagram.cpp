@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/plugins/stim300/datagram.h"
 
-#include <boost/crc.hpp>
-
 #include "drivers/plugins/framing/fields.h"
 
 namespace ifog::stim300 {
@@ -23,11 +21,11 @@ void each_triad(const Content& content, Fields& fields, Use&& use) {
   if (content.inclination) use(fields.inclination_temperature, 2U);
 }
 
-std::uint32_t crc_of(std::span<const std::uint8_t> bytes) noexcept {
-  boost::crc_optimal<32, 0x04C11DB7U, 0xFFFFFFFFU, 0U, false, false> crc;
-  crc.process_bytes(bytes.data(), bytes.size());
-  for (std::size_t n = bytes.size(); n % 4 != 0; ++n) crc.process_byte(0);
-  return crc.checksum();
+constexpr std::size_t kWord = 4;  // bytes
+
+bool crc_fits(std::span<const std::uint8_t> datagram) noexcept {
+  const std::size_t covered = datagram.size() - kCrcLength;
+  return framing::crc32_mpeg2(datagram.first(covered), kWord) == Reader(datagram.data() + covered).number(4);
 }
 
 }  // namespace
@@ -70,13 +68,8 @@ std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatag
   out.number(datagram.counter, 1);
   out.number(datagram.latency_us, 2);
   const std::size_t length = length_of(content);
-  out.number(crc_of(bytes.first(length - kCrcLength)), 4);
+  out.number(framing::crc32_mpeg2(bytes.first(length - kCrcLength), kWord), 4);
   return length;
-}
-
-bool crc_fits(std::span<const std::uint8_t> datagram) noexcept {
-  const std::size_t covered = datagram.size() - kCrcLength;
-  return crc_of(datagram.first(covered)) == Reader(datagram.data() + covered).number(4);
 }
 
 framing::Announced Protocol::at(std::span<const std::uint8_t> bytes) const noexcept {

@@ -84,7 +84,6 @@ std::optional<Content> content_of(std::uint8_t identifier) noexcept;
 Datagram unpack(const Content& content, std::span<const std::uint8_t> bytes) noexcept;
 // Includes the CRC; returns the length.
 std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> out);
-bool crc_fits(std::span<const std::uint8_t> datagram) noexcept;
 
 // For the finder of intact frames.
 struct Protocol {

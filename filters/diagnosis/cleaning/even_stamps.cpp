@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/units/told_time.h"
 

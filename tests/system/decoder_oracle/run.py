@@ -169,9 +169,8 @@ def check_dbc(name, options, axes, temperature, counter, scale):
         same(f"{name} {column} by ifog", found[key], back[column], 1e-15)
 
 
-# A bus in handwritten form: comments, several signals per line, nodes and receivers on further lines, statements without ';', a
-# half float, an unreadable line, a name by attribute.
-# statements without their ';', a half float, a line that cannot be read, a name by attribute.
+# A bus in handwritten form: comments, several signals per line, nodes and receivers on further lines, statements
+# without ';', an unreadable line, a name by attribute.
 BY_HAND = """// a bench
 VERSION "1"
 BU_:
@@ -180,7 +179,7 @@ BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
 BO_ 291 Rates: 8 Box SG_ Which M : 0|8@1+ (1,0) [0|0] "" X SG_ Count : 8|8@1+ (1,0) [0|0] ""
   X,
   Y
- SG_ Yaw_Rate_0001 m1 : 16|16@1- (1,0) [0|0] "\xb0/sec" X
+ SG_ Yaw_Rate_0001 m1 : 16|32@1- (1,0) [0|0] "\xb0/sec" X
  SG_ Pitch_Rate m : 23|20@0- (0.002,0) [0|0] "mrad/s" X // Motorola
  SG_ Broken : 0|33x@1- (1,0) [0|0] "rad/s" X
 CM_ BO_ 291 "no end here"
@@ -213,9 +212,9 @@ def check_by_hand():
     rng = random.Random(12)
     yaw, pitch, temperature, sent = [], [], [], []
     for k in range(600):
-        half = struct.unpack("<H", struct.pack("<e", rng.gauss(0.0, 20.0)))[0]
+        single = struct.unpack("<I", struct.pack("<f", rng.gauss(0.0, 20.0)))[0]
         steps, tenths = rng.randrange(-1 << 19, 1 << 19), rng.randrange(-300, 600)
-        yaw.append(math.radians(struct.unpack("<e", struct.pack("<H", half))[0]))
+        yaw.append(math.radians(struct.unpack("<f", struct.pack("<I", single))[0]))
         pitch.append(steps * 0.002 * 1e-3)
         temperature.append(tenths * 0.1 + 5)
         warm, first, second = bytearray(8), bytearray(8), bytearray(8)
@@ -223,7 +222,7 @@ def check_by_hand():
         for data, which in ((first, 1), (second, rng.choice((2, 7)))):
             pack(data, 0, 8, True, which)
             pack(data, 8, 8, True, k)
-        pack(first, 16, 16, True, half)
+        pack(first, 16, 32, True, single)
         pack(second, 23, 20, False, steps)
         sent.append((0.004 * k, 292, warm))
         sent.append((0.004 * k + 0.0005, 291, first))

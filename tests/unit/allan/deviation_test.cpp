@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/allan/deviation.h"
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "filters/allan/gapped_deviation.h"
 #include "filters/allan/streaming.h"
 #include "filters/allan/theo1.h"

@@ -8,7 +8,6 @@
 namespace ifog {
 namespace {
 
-constexpr double kRound = 2.0 * std::numbers::pi;
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 // Ten seconds of 1 °/s are lost, some rollovers of the counter: no row turns faster or slower, and one that
@@ -46,34 +45,6 @@ TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
   }
 }
 
-TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
-  for (const std::uint32_t modulus : {0U, 16U}) {
-    ifog_description d{};
-    d.axes = 1;
-    d.nominal_rate_hz = 5000.0;
-    d.has_device_time = 1;
-    d.sequence_modulus = modulus;
-    test::Built builder(d);
-    for (int n = 0; n < 20'000; ++n) {
-      ifog_sample sample{};
-      sample.flags = IFOG_SAMPLE_DEVICE_TIME;
-      if (modulus != 0) sample.flags |= IFOG_SAMPLE_SEQUENCE;
-      sample.sequence = modulus != 0 ? static_cast<std::uint32_t>(n) % modulus : 0;
-      sample.device_time_ns = static_cast<std::int64_t>(n / 5) * 1'000'000;
-      sample.arrival_ns = kStart_ns + std::int64_t{n} * 200'000;
-      sample.valid_axes = 1;
-      sample.value[0] = 1e-3 * (n % 7);
-      builder.add(sample);
-    }
-    EXPECT_EQ(builder.counts().missing, 0U) << modulus;
-    EXPECT_EQ(builder.counts().repeated, 0U) << modulus;
-    const Capture made = builder.finish();
-    ASSERT_EQ(made.size(), 20'000U) << modulus;
-    for (std::size_t i = 1; i < made.size(); ++i) ASSERT_GT(made.time_s[i], made.time_s[i - 1]) << i;
-    EXPECT_NEAR(made.time_s.back() - made.time_s.front(), 19'999 * 2e-4, 2e-3) << modulus;
-  }
-}
-
 ifog_description description(double rate_hz, std::uint32_t modulus = 0) {
   ifog_description out{};
   out.axes = 1;
@@ -101,18 +72,6 @@ TEST(SampleTimes, ArrivalsCountFromTheFirstUnlessTheyAreALogsOwnStamps) {
   }
   EXPECT_EQ(counted.origin(), TimeOrigin{});
   EXPECT_EQ(kept.origin(), (TimeOrigin{1'763'000'000, 0}));
-}
-
-TEST(SampleTimes, SmallStampsStandAsTheyAreAndZeroIsOne) {
-  for (const std::int64_t zero_ns : {std::int64_t{0}, std::int64_t{1'000'000'000}})
-    for (const std::int64_t start_s : {0, 50}) {
-      SampleTimes times(description(0.0));
-      times.keep_stamps(zero_ns);
-      for (int i = 0; i < 100; ++i)
-        EXPECT_EQ(times.next(sample(zero_ns + start_s * 1'000'000'000 + kStep_ns * i, i))->since_s,
-                  static_cast<double>(start_s * 100 + i) / 100.0);
-      EXPECT_EQ(times.origin(), TimeOrigin{});
-    }
 }
 
 TEST(SampleTimes, ACounterCountsOnFromALogsFirstStamp) {

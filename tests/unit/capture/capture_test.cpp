@@ -2,7 +2,7 @@
 #include <sys/resource.h>
 #include <zlib.h>
 
-#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/input_file.h"
 #include "tests/unit/capture/read_capture.h"
@@ -214,17 +214,6 @@ TEST(Measurable, ALetterIsNoUnit) {
   EXPECT_FALSE(measurable("case_temperature_K").holds(-1.0));
   EXPECT_FALSE(measurable("supply_V").holds(1e7));
   EXPECT_FALSE(measurable("x_accel_g").holds(1e7));
-}
-
-// A thermometer that says -999 every other row tells nothing; the rate does.
-TEST(Measurable, AChannelOfThemIsMissingAndNoReasonToRefuse) {
-  std::string text = "time_s,rate_radps,temperature_degC\n";
-  for (int i = 0; i < 100; ++i) text += std::to_string(i) + (i % 2 == 1 ? ",0,-999\n" : ",0,25\n");
-  const Capture read = parse_capture(text, "a.csv");
-  EXPECT_TRUE(std::isnan(read.channels[0].values[1]));
-  EXPECT_EQ(read.channels[0].values[2], 25.0);
-  ASSERT_EQ(read.faults.size(), 1U);
-  EXPECT_TRUE(test::has(read.faults[0], "50 such cells treated as missing"));
 }
 
 TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {

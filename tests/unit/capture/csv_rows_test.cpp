@@ -1,58 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv/csv_rows.h"
-#include "drivers/capture/files/input_file.h"
-#include "drivers/capture/files/output_file.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/test.h"
 
 namespace {
 
 using ifog::CsvLayout;
-using ifog::RowBlock;
 
-// All that was handed over, put together.
-struct Gathered final : ifog::RowSink {
-  std::vector<std::string> names;
-  RowBlock rows;
-  std::size_t blocks = 0;
-
-  void begin(const std::vector<std::string>& given) override {
-    names = given;
-    rows.columns.resize(names.size());
-  }
-  void take(RowBlock& next) override {
-    ASSERT_GT(next.size(), 0U);
-    ++blocks;
-    rows.time_s.insert(rows.time_s.end(), next.time_s.begin(), next.time_s.end());
-    ASSERT_EQ(next.columns.size(), names.size());
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      ASSERT_EQ(next.columns[c].size(), next.size());
-      rows.columns[c].insert(rows.columns[c].end(), next.columns[c].begin(), next.columns[c].end());
-    }
-  }
-};
-
-struct Reading {
-  Gathered got;
-  ifog::RowNotes notes;
+struct Reading : ifog::Table {
   std::string refused;
 };
 
-// What it is refused with, or "".
-std::string read_by(ifog::RowSink& sink, const std::string& text, std::size_t piece, ifog::RowNotes& notes,
-                    const CsvLayout& layout = {}) {
+Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& layout = {}) {
   std::size_t at = 0;
   const auto read = [&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, text.size() - at);
-    std::memcpy(to, text.data() + at, n);
+    const std::size_t n = text.copy(to, most, at);
     at += n;
     return n;
   };
-  return ifog::test::refusal([&] { notes = ifog::read_csv_rows(read, "a.csv", layout, sink, piece); }, "");
-}
-
-Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& layout = {}) {
+  const auto rows = [&](ifog::RowSink& sink) {
+    return ifog::read_csv_rows(read, "a.csv", layout, sink, piece);
+  };
   Reading out;
-  out.refused = read_by(out.got, text, piece, out.notes, layout);
+  out.refused = ifog::test::refusal([&] { static_cast<ifog::Table&>(out) = ifog::table_of(rows); }, "");
   return out;
 }
 
@@ -60,20 +29,20 @@ void expect_same(const Reading& a, const Reading& b, std::size_t piece) {
   SCOPED_TRACE(piece);
   EXPECT_EQ(a.refused, b.refused);
   if (!a.refused.empty()) return;
-  EXPECT_EQ(a.got.names, b.got.names);
-  EXPECT_EQ(a.got.rows.time_s, b.got.rows.time_s);
-  for (std::size_t c = 0; c < a.got.names.size(); ++c) {
-    ASSERT_EQ(a.got.rows.columns[c].size(), b.got.rows.columns[c].size());
+  EXPECT_EQ(a.time_s, b.time_s);
+  ASSERT_EQ(a.columns.size(), b.columns.size());
+  for (std::size_t c = 0; c < a.columns.size(); ++c) {
+    EXPECT_EQ(a.columns[c].name, b.columns[c].name);
+    ASSERT_EQ(a.columns[c].values.size(), b.columns[c].values.size());
     // Bit for bit, missing cells as well.
-    EXPECT_EQ(0, std::memcmp(a.got.rows.columns[c].data(), b.got.rows.columns[c].data(),
-                             a.got.rows.columns[c].size() * sizeof(double)));
+    EXPECT_EQ(0, std::memcmp(a.columns[c].values.data(), b.columns[c].values.data(),
+                             a.columns[c].values.size() * sizeof(double)));
   }
-  EXPECT_EQ(a.notes.comments, b.notes.comments);
-  for (std::size_t row = 0; row < a.got.rows.size(); ++row)
-    ASSERT_EQ(a.notes.line_of_row(row), b.notes.line_of_row(row));
-  EXPECT_EQ(a.notes.header_line, b.notes.header_line);
-  EXPECT_EQ(a.notes.faults, b.notes.faults);
-  EXPECT_EQ(a.notes.notices, b.notes.notices);
+  EXPECT_EQ(a.comments, b.comments);
+  for (std::size_t row = 0; row < a.time_s.size(); ++row) ASSERT_EQ(a.line_of_row(row), b.line_of_row(row));
+  EXPECT_EQ(a.header_line, b.header_line);
+  EXPECT_EQ(a.faults, b.faults);
+  EXPECT_EQ(a.notices, b.notices);
 }
 
 std::ptrdiff_t count_of(const std::vector<std::string>& said, const std::string& beginning) {
@@ -107,13 +76,11 @@ TEST(CsvRows, PiecesOfEverySizeAreTheWhole) {
   const std::string text = long_text(12000);
   const Reading whole = in_pieces(text, kWhole);
   ASSERT_EQ(whole.refused, "");
-  EXPECT_EQ(whole.got.rows.size(), 12000U);
-  EXPECT_EQ(whole.notes.faults.size(), 1U);
+  EXPECT_EQ(whole.time_s.size(), 12000U);
+  EXPECT_EQ(whole.faults.size(), 1U);
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece), piece);
   // Long enough for threads, and not all at once.
-  const Reading threaded = in_pieces(text, std::size_t{200} << 10U);
-  expect_same(whole, threaded, 0);
-  EXPECT_GT(threaded.got.blocks, 1U);
+  expect_same(whole, in_pieces(text, std::size_t{200} << 10U), 0);
 }
 
 // EECE5554, shakedPunch_parsed.csv: the last cell is the device's line in quotes, with its line end. A stray quote costs
@@ -124,8 +91,8 @@ TEST(CsvRows, AQuotedCellMayHoldALineEnd) {
     text += std::to_string(i) + ",0.5," + (i == 700 ? "\"$VN\n" : "\"$VN,\"\"1*6\r\n\"\r\n");
   const Reading whole = in_pieces(text, kWhole);
   ASSERT_EQ(whole.refused, "");
-  EXPECT_EQ(whole.got.rows.size(), 3000U);
-  EXPECT_EQ(whole.notes.line_of_row(10), 24U);
+  EXPECT_EQ(whole.time_s.size(), 3000U);
+  EXPECT_EQ(whole.line_of_row(10), 24U);
   EXPECT_EQ(ifog::RowNotes{}.line_of_row(10), 0U) << "of no file with lines";
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece), piece);
 }
@@ -144,9 +111,9 @@ TEST(CsvRows, ChosenColumnsAndAnglesAreTheWholesToo) {
                     ifog::CsvColumn::parse("rate_y_radps=Angle:deg")};
   const Reading whole = in_pieces(text, kWhole, layout);
   ASSERT_EQ(whole.refused, "");
-  EXPECT_NEAR(whole.got.rows.columns[0][8], 1.25 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_NEAR(whole.columns[0].values[8], 1.25 * std::numbers::pi / 180.0, 1e-15);
   // Three degrees in ten milliseconds, also where the angle begins again.
-  EXPECT_NEAR(whole.got.rows.columns[1][120], 300.0 * std::numbers::pi / 180.0, 1e-9);
+  EXPECT_NEAR(whole.columns[1].values[120], 300.0 * std::numbers::pi / 180.0, 1e-9);
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece, layout), piece);
 }
 
@@ -171,8 +138,8 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
     for (const std::size_t piece : kPieces) {
       const Reading found = in_pieces(wrong, piece);
       ASSERT_EQ(found.refused, "");
-      EXPECT_EQ(found.got.rows.size() + 1, right.got.rows.size()) << bad << piece;
-      EXPECT_EQ(count_of(found.notes.faults, said + "; this"), 1) << bad << piece;
+      EXPECT_EQ(found.time_s.size() + 1, right.time_s.size()) << bad << piece;
+      EXPECT_EQ(count_of(found.faults, said + "; this"), 1) << bad << piece;
     }
     std::string rows = "time_s,rate_x_radps,rate_y_radps,t_K\n";
     for (int i = 0; i < 300; ++i) rows += i % 50 == 1 ? bad + "\n" : std::to_string(100 + i) + ",1,2,3\n";
@@ -187,8 +154,8 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
     for (const std::size_t piece : kPieces) {
       const Reading found = in_pieces(text + "\n" + rest, piece);
       ASSERT_EQ(found.refused, "");
-      EXPECT_EQ(found.got.rows.size(), right.got.rows.size()) << piece;
-      EXPECT_EQ(count_of(found.notes.faults, "a.csv:" + last + ": "), 1) << piece;
+      EXPECT_EQ(found.time_s.size(), right.time_s.size()) << piece;
+      EXPECT_EQ(count_of(found.faults, "a.csv:" + last + ": "), 1) << piece;
     }
   // A header may be far down, and wrong there.
   std::string late;

@@ -143,15 +143,6 @@ TEST_F(Recording, DbcKeepsThreeAxesAndSlowChannels) {
       EXPECT_TRUE(std::isnan(back.channels[0].values[i]));
 }
 
-TEST_F(Recording, AMissingRateStaysMissing) {
-  Capture capture = wave({""});
-  capture.rate_radps[0][10] = kNaN;
-  const Capture back =
-      there_and_back(capture, "dbc", {{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}});
-  ASSERT_EQ(back.size(), 1000U);
-  EXPECT_TRUE(std::isnan(back.rate_radps[0][10]));
-}
-
 TEST_F(Recording, OneIdOnTwoInterfacesIsTwoDevices) {
   const DriverSettings settings{{"dbc", kBus}, {"signal", "Rate_x"}, {"counter", "Counter"}};
   there_and_back(wave({""}), "dbc", settings);

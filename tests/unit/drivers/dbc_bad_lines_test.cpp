@@ -78,7 +78,7 @@ TEST(DbcBadLines, WhatOthersReadIsRead) {
       "// written by hand\nVERSION \"\"\nBS_:\nBU_:\n A\n B // node\n  C\n"
       "BO_ 1 A: 8 X // the box\n SG_ R : 0|8@1+ (1,0) [0|0] \"//\"\n   X,\n   Y // both\n"
       " SG_ S M : 8|8@1+ (1,0) [0|0] \"\"\n X\n SG_ T m : 16|8@1+ (1,0) [0|0] \"\" X\n"
-      " SG_ H : 32|16@1- (1,0) [0|0] \"\" X\n"
+      " SG_ H : 32|32@1- (1,0) [0|0] \"\" X\n"
       "BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n" +
       sg("O", 0) + "SG_MUL_VAL_ 1 T S 3-4;\nSIG_VALTYPE_ 1 H : 1;\nCM_ BO_ 1 \"last\"");
   EXPECT_EQ(d.warnings, Strings{});
@@ -88,7 +88,7 @@ TEST(DbcBadLines, WhatOthersReadIsRead) {
   const std::array<std::uint8_t, 3> yes{0, 4, 9}, no{0, 5, 9};
   EXPECT_TRUE(selected(*t.message, *t.signal, yes));
   EXPECT_FALSE(selected(*t.message, *t.signal, no));
-  EXPECT_EQ(find_signals(d, "H")[0].signal->type, ValueType::kHalf);
+  EXPECT_EQ(find_signals(d, "H")[0].signal->type, ValueType::kFloat);
   const Database orphans =
       parse("BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 X\nBO_ 1 A: 8 X\n" + sg("R", 0));
   EXPECT_EQ(orphans.warnings, Strings{});

@@ -44,19 +44,11 @@ inline void expect_numbers(const double* found, std::initializer_list<double> ex
 }
 
 // Bytes as manuals print them: "FE81 FF55", capital hexadecimal digits, spaces anywhere.
-inline std::vector<std::uint8_t> hex_bytes(std::string_view text) {
-  std::vector<std::uint8_t> bytes;
-  int high = -1;
-  for (const char c : text) {
-    if (c == ' ') continue;
-    const int digit = c <= '9' ? c - '0' : c - 'A' + 10;
-    if (high < 0) {
-      high = digit;
-    } else {
-      bytes.push_back(static_cast<std::uint8_t>(high * 16 + digit));
-      high = -1;
-    }
-  }
+inline std::vector<std::uint8_t> hex_bytes(std::string digits) {
+  std::erase(digits, ' ');
+  std::vector<std::uint8_t> bytes(digits.size() / 2);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    std::from_chars(&digits[2 * i], &digits[2 * i] + 2, bytes[i], 16);
   return bytes;
 }
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "filters/allan/noise/curve_miss.h"
 #include "filters/rest/cleaned_rate.h"
 #include "filters/rest/followed_channel.h"

@@ -12,7 +12,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture.h"
-#include "drivers/row_times/row_times.h"
+#include "drivers/row_times/sample_clock.h"
 #include "filters/model_file/channel_names.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
