@@ -30,7 +30,7 @@ std::vector<CommandFile> files;
 void add(const std::string& option, const std::string& path, bool written) {
   std::optional<FileIdentity> identity = file_identity(path == "-" && !written ? "/dev/stdin" : path);
   if (!identity) return;
-  const auto same = std::find_if(files.begin(), files.end(), [&](const CommandFile& other) {
+  const auto same = std::ranges::find_if(files, [&](const CommandFile& other) {
     return (other.written || written) && other.identity == *identity;
   });
   if (same != files.end())
@@ -83,9 +83,7 @@ void expect_no_other_kind(const std::string& option, const std::string& path,
   const auto says = [name = unpacked_name(path)](std::string_view ending) {
     return has_ending(name, ending);
   };
-  if (std::any_of(endings.begin(), endings.end(), says) ||
-      std::none_of(std::begin(kKnown), std::end(kKnown), says))
-    return;
+  if (std::ranges::any_of(endings, says) || std::none_of(std::begin(kKnown), std::end(kKnown), says)) return;
   throw WrongUsage(option,
                    "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
 }
