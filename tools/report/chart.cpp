@@ -18,23 +18,8 @@ constexpr double kLeft = 68.0, kRight = 16.0, kLegendRow = 17.0;
 constexpr double kCharacter = 6.9;  // mean width in the 12 px font
 
 const char* css_class(Role role) {
-  switch (role) {
-    case Role::kBefore:
-      return "before";
-    case Role::kAfter:
-      return "after";
-    case Role::kFit:
-      return "fit";
-    case Role::kSecond:
-      return "second";
-    case Role::kRaw:
-      return "raw";
-    case Role::kThird:
-      return "third";
-    case Role::kFourth:
-      return "fourth";
-  }
-  return "";
+  constexpr std::array kNames{"before", "after", "fit", "second", "raw", "third", "fourth"};
+  return kNames[static_cast<std::size_t>(role)];
 }
 
 std::string fixed(double value) { return fmt::format("{:.1f}", value); }
@@ -61,7 +46,7 @@ std::vector<Tick> side_by_side(const Scale& scale, double edge) {
         if (tick.major != major) continue;
         const double half = 0.5 * text_width(tick.text), at = scale(tick.at);
         const bool beyond = at + half > edge;
-        const bool room = std::none_of(occupied.begin(), occupied.end(), [&](const auto& other) {
+        const bool room = std::ranges::none_of(occupied, [&](const auto& other) {
           return at - half < other.second + kApart && at + half > other.first - kApart;
         });
         if (room && !beyond)

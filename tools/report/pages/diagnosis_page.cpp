@@ -27,7 +27,7 @@ std::string parameter_rows(const FoundEffect& found) {
     for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has its own column
       if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
     }
-    std::replace(name.begin(), name.end(), '_', ' ');
+    std::ranges::replace(name, '_', ' ');
     out += row(escaped(name),
                {number_cell(with_error(p.value * unit.scale, p.std_error * unit.scale)), escaped(unit.unit)});
   }
@@ -77,7 +77,7 @@ std::string tiles(const Diagnosis& d) {
     const bool known = before != d.before.end() && after != d.after.end() && before->second > 0.0;
     return known ? after->second / before->second : std::numeric_limits<double>::infinity();
   };
-  std::stable_sort(keys.begin(), keys.end(), [&](const char* a, const char* b) { return left(a) < left(b); });
+  std::ranges::stable_sort(keys, [&](const char* a, const char* b) { return left(a) < left(b); });
   for (const char* key : keys) {
     const auto before = d.before.find(key), after = d.after.find(key);
     if (before == d.before.end() || after == d.after.end() || !std::isfinite(before->second)) continue;
