@@ -163,8 +163,7 @@ namespace {
 // Checks names and ranges of all numbers and fills in defaults.
 void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
   for (const auto& [name, value] : recipe.number) {
-    const auto key =
-        std::find_if(keys.begin(), keys.end(), [&n = name](const Key& k) { return n == k.name; });
+    const auto key = std::ranges::find_if(keys, [&n = name](const Key& k) { return n == k.name; });
     if (key == keys.end()) {
       std::vector<std::string_view> known;
       known.reserve(keys.size());
@@ -190,7 +189,7 @@ void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
 
 void check_lists(const Recipe& recipe, const Kind& kind) {
   for (const auto& [name, values] : recipe.list) {
-    if (std::none_of(kind.lists.begin(), kind.lists.end(), [&n = name](const char* l) { return n == l; }))
+    if (std::ranges::none_of(kind.lists, [&n = name](const char* l) { return n == l; }))
       throw std::invalid_argument("key " + in_quotes(name) + " is unknown for " + recipe.kind);
     if (values.empty()) throw std::invalid_argument(name + " is empty, expected numbers");
   }
@@ -201,25 +200,22 @@ void check_lists(const Recipe& recipe, const Kind& kind) {
 }
 
 void check_channels(const Recipe& recipe, const Kind& kind) {
-  if (kind.channels >= 1 && recipe.channel.empty())
-    throw std::invalid_argument("key 'channel' is missing for " + recipe.kind +
-                                ", expected a channel's name, or 'rate'");
-  if (kind.channels >= 2 && recipe.with_channel.empty())
-    throw std::invalid_argument("key 'with_channel' is missing for " + recipe.kind +
-                                ", expected a channel's name, or 'rate'");
-  if (kind.channels < 1 && !recipe.channel.empty())
-    throw std::invalid_argument("key 'channel' is unknown for " + recipe.kind);
-  if (kind.channels < 1 && !recipe.minus_channel.empty())
-    throw std::invalid_argument("key 'minus_channel' is unknown for " + recipe.kind);
-  if (kind.channels < 2 && !recipe.with_channel.empty())
-    throw std::invalid_argument("key 'with_channel' is unknown for " + recipe.kind);
+  const auto check = [&](const char* key, const std::string& name, bool known, bool required) {
+    const std::string what = std::string("key '") + key + "' is ";
+    if (required && name.empty())
+      throw std::invalid_argument(what + "missing for " + recipe.kind +
+                                  ", expected a channel's name, or 'rate'");
+    if (!known && !name.empty()) throw std::invalid_argument(what + "unknown for " + recipe.kind);
+  };
+  check("channel", recipe.channel, kind.channels >= 1, kind.channels >= 1);
+  check("minus_channel", recipe.minus_channel, kind.channels >= 1, false);
+  check("with_channel", recipe.with_channel, kind.channels >= 2, kind.channels >= 2);
 }
 
 }  // namespace
 
 Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vector<Key>& common) {
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return recipe.kind == k.name; });
+  const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return recipe.kind == k.name; });
   if (kind == kinds.end()) {
     std::vector<std::string_view> known;
     known.reserve(kinds.size());
@@ -233,8 +229,8 @@ Recipe completed(Recipe recipe, const std::vector<Kind>& kinds, const std::vecto
   check_channels(recipe, *kind);
   if (recipe.kind == "lookup") {
     const auto& x = recipe.list.at("x");
-    if (x.size() != recipe.list.at("values").size() || x.size() < 2 || !std::is_sorted(x.begin(), x.end()) ||
-        std::adjacent_find(x.begin(), x.end()) != x.end())
+    if (x.size() != recipe.list.at("values").size() || x.size() < 2 || !std::ranges::is_sorted(x) ||
+        std::ranges::adjacent_find(x) != x.end())
       throw std::invalid_argument(
           "x and values of a lookup must be equally long, two at least, and x increasing");
   }
