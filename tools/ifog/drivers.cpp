@@ -92,7 +92,7 @@ void run_drivers(const std::string& name, const std::string& json) {
   } else {
     all = list_plugins(folders);
   }
-  if (!json.empty()) write_drivers(json, all, folders);
+  write_drivers(json, all, folders);
   if (!name.empty()) {
     print_driver(all.front());
     return;

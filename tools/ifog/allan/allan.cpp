@@ -203,7 +203,7 @@ void run_allan(AllanArguments& a) {
   }
   for (const AllanRecord& record : records) print_allan(record, a.options);
   if (records.size() > 1) print_comparison(records);
-  if (!a.json.empty()) write_json(a.json, allan_json(records, a.options), 1);
+  write_json(a.json, allan_json(records, a.options), 1);
   if (!a.picture.empty()) draw_allan(a.picture, records);
 }
 

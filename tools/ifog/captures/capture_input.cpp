@@ -16,6 +16,7 @@
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
+#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/options/command.h"
@@ -236,18 +237,39 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   return table;
 }
 
-LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
-                                            const LongTableSink::Wanted& wanted) const {
-  InputFile file(path);
-  Sha256 hash;
-  if (sha256) file.observe([&hash](std::string_view bytes) { hash.add(bytes); });
-  LongTable table = read_long(file, wanted);
-  if (sha256) {
-    file.read_to_the_end();
-    *sha256 = hash.hex();
+PreparedCaptures CaptureInput::prepared(const std::vector<std::string>& paths, const Preparation& how) const {
+  PreparedCaptures out;
+  for (const std::string& path : paths) {
+    InputFile file(path);
+    Sha256 hash;
+    if (how.hashed) file.observe([&hash](std::string_view bytes) { hash.add(bytes); });
+    LongTable table = read_long(file, how.wanted);
+    if (how.hashed) file.read_to_the_end();
+    out.hashes.push_back(how.hashed ? hash.hex() : "");
+    table.clean_and_tell(leave_out_repeats, path);
+    out.read.emplace_back(std::move(table), path);
   }
-  table.clean_and_tell(leave_out_repeats, path);
-  return {std::move(table), path};
+  std::vector<CaptureView> as_sent;
+  std::vector<TimePart::Rows> rows;
+  for (std::size_t c = 0; c < paths.size(); ++c) {
+    CaptureView& whole = out.views.emplace_back(out.read[c].view());
+    if (how.since_power_up_s) whole.since_power_up_s = how.since_power_up_s;
+    rows.push_back(how.part.rows(whole.time_s, whole.origin, paths[c]));
+    as_sent.push_back(rows_of(whole, rows.back()));
+  }
+  const std::vector<std::string> unusable = unusable_axes(as_sent, paths);
+  if (how.model != nullptr && !how.model->effects.empty()) {
+    tell_model_of_one_axis(*how.model, how.model_path, out.views.front().axes);
+    for (CaptureView& view : out.views) {
+      out.corrected.push_back(naming(how.model_path, [&] { return compensated_rates(view, *how.model); }));
+      view.rate_radps.assign(out.corrected.back().begin(), out.corrected.back().end());
+    }
+  }
+  for (std::size_t c = 0; c < paths.size(); ++c) {
+    out.views[c] = rows_of(std::move(out.views[c]), rows[c]);
+    leave_out(unusable, out.views[c]);
+  }
+  return out;
 }
 
 }  // namespace ifog::tools

@@ -23,8 +23,6 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/verdict.h"
 #include "tools/ifog/console/command_files.h"
@@ -127,13 +125,13 @@ json settings_json(const FilterSettings& s) {
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-    adev[fmt::format("{:g}", kComparedTaus[i])] = as_json(row.adev_radps[i]);
+    adev[fmt::format("{:g}", kComparedTaus[i])] = row.adev_radps[i];
   json out{{"rule", row.rule},
            {"axis", axis},
            {"settings", settings_json(settings)},
-           {"rmse_radps", as_json(row.rmse_radps)},
-           {"bias_radps", as_json(row.bias_radps)},
-           {"lag_s", as_json(row.lag_s)},
+           {"rmse_radps", row.rmse_radps},
+           {"bias_radps", row.bias_radps},
+           {"lag_s", row.lag_s},
            {"std_radps", row.std_radps},
            {"adev_radps", adev}};
   if (row.rule == "raw") {
@@ -142,13 +140,13 @@ json row_json(const ComparisonRow& row, const std::string& axis, const FilterSet
   }
   out["heading_end_rad"] = row.heading_end_rad;
   out["heading_max_rad"] = row.heading_max_rad;
-  out["whiteness"] = {{"lag1", as_json(row.whiteness_lag1)}, {"excess", as_json(row.whiteness_excess)}};
-  out["nis_mean"] = as_json(row.nis_mean);
-  out["nis_typical"] = as_json(row.nis_typical);
+  out["whiteness"] = {{"lag1", row.whiteness_lag1}, {"excess", row.whiteness_excess}};
+  out["nis_mean"] = row.nis_mean;
+  out["nis_typical"] = row.nis_typical;
   out["share_at_rest"] = row.share_at_rest;
   json steps = json::array();
   for (const StepResponse& step : row.step)
-    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", as_json(step.samples)}});
+    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", step.samples}});
   out["step_response"] = steps;
   return out;
 }
@@ -233,13 +231,13 @@ void run_compare(const CompareArguments& options) {
   will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
   will_write("--plot", options.plot_file);
-  LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
-    std::string axis;
-    return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) || is_other_rate(column);
-  });
-  read.cut(options.part, options.capture);
-  CaptureView capture = read.view();
-  leave_out(unusable_axes({capture}, {options.capture}), capture);
+  const PreparedCaptures prepared = options.input.prepared(
+      {options.capture}, {.part = options.part, .wanted = [](const std::string& column) {
+                            std::string axis;
+                            return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) ||
+                                   is_other_rate(column);
+                          }});
+  const CaptureView& capture = prepared.views.front();
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)
@@ -274,8 +272,7 @@ void run_compare(const CompareArguments& options) {
       "that of a normal law; steps of 20 and 5 sigma in samples to 90 %\n");
   const std::vector<Verdict> verdicts =
       print_axes(capture, result, !motion.words.empty() && !motion.left_out);
-  if (!options.json_file.empty())
-    write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
+  write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules, verdicts);
     say("picture: {}\n", options.plot_file);

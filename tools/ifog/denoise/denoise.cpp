@@ -57,10 +57,9 @@ struct ConfiguredSensor {
 };
 
 const SensorConfig& chosen(const Config& config, const DenoiseOptions& options) {
-  const auto found =
-      std::find_if(config.sensors.begin(), config.sensors.end(), [&](const SensorConfig& sensor) {
-        return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
-      });
+  const auto found = std::ranges::find_if(config.sensors, [&](const SensorConfig& sensor) {
+    return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
+  });
   if (found != config.sensors.end()) return *found;
   throw refusal("{}: {}", options.config,
                 options.sensor.empty() ? "has several sensors; expected --sensor NAME"
@@ -220,7 +219,7 @@ void run_denoise(DenoiseOptions options) {
   rows.finish(options.capture);
   if (result.exchanges == 0) rows.model_trial().weigh();  // otherwise there were several models
   tell_denoised(options, rows, result);
-  if (!options.json.empty()) write_json(options.json, denoise_json(options, rows, result));
+  write_json(options.json, denoise_json(options, rows, result));
   if (!options.picture.empty()) draw_denoised(options.picture, rows, result);
 }
 

@@ -28,7 +28,7 @@ namespace {
 
 bool says_anything(const FilterChoice& choice) {
   const auto& table = filter_table();
-  return std::any_of(table.begin(), table.end(), [&](const FilterSetting& setting) {
+  return std::ranges::any_of(table, [&](const FilterSetting& setting) {
     return std::visit([&](const auto& member) { return (choice.*member.choice).has_value(); },
                       setting.member);
   });

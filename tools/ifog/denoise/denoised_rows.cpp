@@ -101,9 +101,8 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
 
 void DenoisedRows::finish(const std::string& name) {
   if (extent_.written == 0 && extent_.rows > 0) part_.refuse_empty(extent_.first_s, extent_.last_s, name);
-  if (extent_.written > 0 && std::all_of(moments_.begin(), moments_.end(), [&](const AxisMoments& axis) {
-        return axis.missing == extent_.written;
-      }))
+  if (extent_.written > 0 &&
+      std::ranges::all_of(moments_, [&](const AxisMoments& axis) { return axis.missing == extent_.written; }))
     refuse_without_rates(name, extent_.written);
   if (smooth_)
     for (Samples* const column : written_columns())

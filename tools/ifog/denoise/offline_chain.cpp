@@ -29,8 +29,7 @@ bool used(const Model* model, const std::string& channel) {
     const ChannelNames names = names_in(of_effect);
     return names.of == channel || names.less == channel;
   };
-  return model != nullptr &&
-         std::any_of(model->effects.begin(), model->effects.end(), [&](const Effect& effect) {
+  return model != nullptr && std::ranges::any_of(model->effects, [&](const Effect& effect) {
            return names_it(effect.channel) || names_it(effect.with_channel);
          });
 }
@@ -239,7 +238,7 @@ void ChainRun::count(bool counts) {
 
 void ChainRun::describe() {
   for (const std::string& effect : chain_->parts().left_out())
-    if (std::find(result_.left_out.begin(), result_.left_out.end(), effect) == result_.left_out.end())
+    if (std::ranges::find(result_.left_out, effect) == result_.left_out.end())
       result_.left_out.push_back(effect);
   result_.model = chain_->parts().model_identity();
   result_.noise_learned = !chain_->parts().noise_known();

@@ -64,16 +64,15 @@ std::optional<std::uint64_t> last_recording(const SensorConfig& sensor) {
   }
 }
 
-nlohmann::ordered_json adoption_json(const Proposal& proposal, const Watched& watched,
-                                     const std::string& text) {
+nlohmann::json adoption_json(const Proposal& proposal, const Watched& watched, const std::string& text) {
   constexpr std::array kNames{"kept", "in_part", "broken", "open"};
   return {{"schema", "ifog.adoption/1"},
           {"sensor", proposal.sensor},
           {"model", proposal.model.identity},
           {"replaced", proposal.against.identity},
-          {"promised", as_json(proposal.gain)},
+          {"promised", proposal.gain},
           {"watched_s", watched.seconds},
-          {"found", as_json(watched.gain)},
+          {"found", watched.gain},
           {"verdict", kNames[static_cast<std::size_t>(verdict_of(watched.gain))]},
           {"nis_mean", watched.nis},
           {"whiteness", watched.whiteness},
@@ -142,7 +141,7 @@ void adopt(const AdoptArguments& arguments) {
   say("{}: model {} in place of {}: {}\n", sensor.name, proposal.model.identity,
       or_none(now.before.name.identity), printable(proposal.why, kLongestMessage));
   const auto unwatched = [&](const std::string& why) {
-    if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, {}, why));
+    write_json(arguments.json, adoption_json(proposal, {}, why));
   };
   if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
@@ -159,7 +158,7 @@ void adopt(const AdoptArguments& arguments) {
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
   say("  {}\n", text);
-  if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, watched, text));
+  write_json(arguments.json, adoption_json(proposal, watched, text));
   try {
     keep_outcome(field, sensor.name, proposal.model, text);
   } catch (const std::exception& error) {
@@ -195,13 +194,12 @@ void revert(const AdoptArguments& arguments) {
   exchange(place, back, now, history, {"revert", when, name, now.name, "", {}, "", last_recording(sensor)});
   say("{}: model {} is in place again, {} is kept\n", sensor.name, or_none(name.identity), now.name.identity);
   if (!place.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
-                                                      {"sensor", sensor.name},
-                                                      {"when", when},
-                                                      {"model", name.identity},
-                                                      {"replaced", now.name.identity},
-                                                      {"running", place.daemon_runs()}});
+  write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
+                                                    {"sensor", sensor.name},
+                                                    {"when", when},
+                                                    {"model", name.identity},
+                                                    {"replaced", now.name.identity},
+                                                    {"running", place.daemon_runs()}});
 }
 
 }  // namespace

@@ -19,12 +19,7 @@ struct HistoryFile {
   std::string sensor;
   std::vector<ModelChange> changes;
 };
-
-template <typename Io, Is<HistoryFile> T>
-void fields(Io& io, T& of) {
-  io("sensor", of.sensor);
-  io("changes", of.changes);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HistoryFile, sensor, changes)
 
 std::string path_of(const std::string& state, const std::string& sensor) {
   return (std::filesystem::path(state) / (sensor + ".night.json")).string();
@@ -32,16 +27,21 @@ std::string path_of(const std::string& state, const std::string& sensor) {
 
 }  // namespace
 
-template <typename Io, Is<ModelChange> T>
-void fields(Io& io, T& of) {
-  io("what", of.what);
-  io("when", of.when);
-  io("model", of.model);
-  io("replaced", of.replaced);
-  io("why", of.why);
-  io("gain", of.gain);
-  io("outcome", of.outcome);
-  io.if_there("recorded", of.recorded);
+void to_json(nlohmann::json& json, const ModelChange& of) {
+  json = {{"what", of.what}, {"when", of.when}, {"model", of.model},    {"replaced", of.replaced},
+          {"why", of.why},   {"gain", of.gain}, {"outcome", of.outcome}};
+  if (of.recorded) json["recorded"] = *of.recorded;
+}
+
+void from_json(const nlohmann::json& json, ModelChange& of) {
+  json.at("what").get_to(of.what);
+  json.at("when").get_to(of.when);
+  json.at("model").get_to(of.model);
+  json.at("replaced").get_to(of.replaced);
+  json.at("why").get_to(of.why);
+  json.at("gain").get_to(of.gain);
+  json.at("outcome").get_to(of.outcome);
+  if (json.contains("recorded")) json.at("recorded").get_to(of.recorded.emplace());
 }
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
@@ -102,13 +102,7 @@ std::string History::kept_path(const ModelName& name) const {
       .string();
 }
 
-template <typename Io, Is<Bookmark> T>
-void fields(Io& io, T& of) {
-  io("sensor", of.sensor);
-  io("until", of.until);
-  io("when", of.when);
-  io("said", of.said);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Bookmark, sensor, until, when, said)
 
 std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
   return read_state<Bookmark>(path_of(state, sensor), kNightSchema);

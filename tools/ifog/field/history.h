@@ -24,6 +24,8 @@ struct ModelChange {
   // clock was set. nullopt: not readable, or written by an older version.
   std::optional<std::uint64_t> recorded{};
 };
+void to_json(nlohmann::json& json, const ModelChange& of);
+void from_json(const nlohmann::json& json, ModelChange& of);
 
 class History {
  public:

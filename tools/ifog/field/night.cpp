@@ -266,13 +266,13 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   const std::span<const double> time_s = recorded.capture.view().time_s;
   const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());
   const auto held_out =
-      static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), fitted_to) - time_s.begin());
+      static_cast<std::size_t>(std::ranges::lower_bound(time_s, fitted_to) - time_s.begin());
   const std::string traced = effects_text(found);
   const auto with = [&] { return model_with(before, found, {name}, hashes); };
   const std::vector<AxisGain> tried = weigh_models(recorded, before, with(), held_out);
   const auto gains = [&](const AxisDiagnosis& axis) {
-    return std::any_of(tried.begin(), tried.end(),
-                       [&](const AxisGain& gain) { return gain.axis == axis.axis && pays(gain); });
+    return std::ranges::any_of(tried,
+                               [&](const AxisGain& gain) { return gain.axis == axis.axis && pays(gain); });
   };
   std::erase_if(found, [&](const AxisDiagnosis& axis) { return !gains(axis); });
   if (found.empty())
@@ -326,7 +326,7 @@ void run_nights(const NightArguments& arguments) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SensorConfig& sensor : field.required_config().sensors) {
     if (!arguments.sensors.empty() &&
-        std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
+        std::ranges::find(arguments.sensors, sensor.name) == arguments.sensors.end())
       continue;
     const NightResult night = Night(arguments, field, sensor).run();
     const std::string line = sensor.name + ": " + printable(night.said, kLongestMessage);
@@ -338,8 +338,7 @@ void run_nights(const NightArguments& arguments) {
                    {"proposed", night.proposed},
                    {"promise", night.promise}});
   }
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
+  write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
   if (failed) throw Failed("not every sensor could be judged");
 }
 

@@ -48,16 +48,24 @@ void require_plain_name(const std::string& name, const std::string& path) {
 
 }  // namespace
 
-template <typename Io, Is<Proposal> T>
-void fields(Io& io, T& of) {
-  io("sensor", of.sensor);
-  io("made", of.made);
-  io("why", of.why);
-  io("against", of.against);
-  io("model", of.model);
-  io("model_file", of.model_file);
-  io("report_file", of.report_file);
-  io("gain", of.gain);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Proposal, sensor, made, why, against, model, model_file, report_file, gain)
+
+void to_json(nlohmann::json& json, const AxisGain& gain) {
+  json = {{"axis", gain.axis},
+          {"seconds", gain.kept.seconds},
+          {"share", gain.kept.share},
+          {"share_std_error", gain.kept.share_error},
+          {"errors", gain.kept.errors}};
+}
+
+void from_json(const nlohmann::json& json, AxisGain& gain) {
+  json.at("axis").get_to(gain.axis);
+  json.at("seconds").get_to(gain.kept.seconds);
+  json.at("share").get_to(gain.kept.share);
+  // Infinity is written as null.
+  const auto error = json.at("share_std_error").get<std::optional<double>>();
+  gain.kept.share_error = error.value_or(std::numeric_limits<double>::infinity());
+  json.at("errors").get_to(gain.kept.errors);
 }
 
 ModelName name_of(const Model& model) {
@@ -82,9 +90,8 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
     const auto ratio = [](const ErrorOfMeans& error) {
       return error.before_radps > 0.0 ? error.after_radps / error.before_radps : 1.0;
     };
-    const auto best =
-        std::min_element(each.kept.errors.begin(), each.kept.errors.end(),
-                         [&](const ErrorOfMeans& a, const ErrorOfMeans& b) { return ratio(a) < ratio(b); });
+    const auto best = std::ranges::min_element(
+        each.kept.errors, [&](const ErrorOfMeans& a, const ErrorOfMeans& b) { return ratio(a) < ratio(b); });
     if (best == each.kept.errors.end()) continue;
     out += fmt::format("{}{}{}RMS of {:g} s means {:.4g} -> {:.4g} °/h", out.empty() ? "" : ", ", each.axis,
                        each.axis.empty() ? "" : ": ", best->averaging_s, best->before_radps / kDegreePerHour,
@@ -149,7 +156,7 @@ std::vector<std::string> sensors_with_proposal(const std::string& state) {
   for (const std::string& name : names_in_state_folder(state))
     if (name.ends_with(kEnding) && name.size() > kEnding.size())
       out.push_back(name.substr(0, name.size() - kEnding.size()));
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 

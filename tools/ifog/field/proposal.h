@@ -15,6 +15,10 @@
 #include "tools/ifog/console/json.h"
 #include "tools/ifog/field/field.h"
 
+namespace ifog {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ErrorOfMeans, averaging_s, means, before_radps, after_radps)
+}  // namespace ifog
+
 namespace ifog::tools {
 
 // Identity and SHA-256 of a model; both "" for no model.
@@ -47,26 +51,9 @@ struct Proposal {
 // "10 s means 0.0312 -> 0.0081 °/h", for the averaging time with the largest gain.
 [[nodiscard]] std::string gain_text(const std::vector<AxisGain>& gain);
 
-template <typename Io, Is<ModelName> T>
-void fields(Io& io, T& of) {
-  io("identity", of.identity);
-  io("sha256", of.sha256);
-}
-template <typename Io, Is<ErrorOfMeans> T>
-void fields(Io& io, T& of) {
-  io("averaging_s", of.averaging_s);
-  io("means", of.means);
-  io("before_radps", of.before_radps);
-  io("after_radps", of.after_radps);
-}
-template <typename Io, Is<AxisGain> T>
-void fields(Io& io, T& of) {
-  io("axis", of.axis);
-  io("seconds", of.kept.seconds);
-  io("share", of.kept.share);
-  io.or_unbounded("share_std_error", of.kept.share_error);
-  io("errors", of.kept.errors);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ModelName, identity, sha256)
+void to_json(nlohmann::json& json, const AxisGain& gain);
+void from_json(const nlohmann::json& json, AxisGain& gain);
 
 // Replaces an existing proposal. Files are written whole, the index last. Throws std::runtime_error with one
 // line.

@@ -87,8 +87,7 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
   }
   if (error && error != std::errc::no_such_file_or_directory)
     throw refusal("{}: cannot read: {}", folder.string(), error.message());
-  std::sort(out.begin(), out.end(),
-            [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
+  std::ranges::sort(out, [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
   return out;
 }
 
@@ -153,9 +152,9 @@ std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before
 PromiseVerdict verdict_of(const std::vector<AxisGain>& gain) {
   constexpr std::array kWorstFirst{PromiseVerdict::broken, PromiseVerdict::open, PromiseVerdict::in_part};
   for (const PromiseVerdict each : kWorstFirst)
-    if (gain.empty() ? each == PromiseVerdict::open
-                     : std::any_of(gain.begin(), gain.end(),
-                                   [&](const AxisGain& axis) { return verdict(axis.kept) == each; }))
+    if (gain.empty() ? each == PromiseVerdict::open : std::ranges::any_of(gain, [&](const AxisGain& axis) {
+          return verdict(axis.kept) == each;
+        }))
       return each;
   return PromiseVerdict::kept;
 }

@@ -7,40 +7,22 @@
 #include "tools/ifog/console/errors.h"
 
 namespace ifog::tools {
-namespace {
-
-void require_depth(const std::string& path, std::string_view text) {
-  std::size_t depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      quoted = c != '"';
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kInputLimits.json_depth)
-        throw refusal("{}: is JSON nested deeper than {}, which no file of ours is", path,
-                      kInputLimits.json_depth);
-    } else if ((c == ']' || c == '}') && depth > 0) {
-      --depth;
-    }
-  }
-}
-
-}  // namespace
 
 nlohmann::json parse_json(const std::string& text, const std::string& path) {
   if (text.size() > kInputLimits.json_bytes) throw refusal("{}: is longer than any JSON of ours", path);
-  require_depth(path, text);
-  return nlohmann::json::parse(text, nullptr, false);
+  const auto is_shallow = [&](int depth, auto, auto&) {
+    if (static_cast<std::size_t>(depth) >= kInputLimits.json_depth)
+      throw refusal("{}: is JSON nested deeper than {}, which no file of ours is", path,
+                    kInputLimits.json_depth);
+    return true;
+  };
+  return nlohmann::json::parse(text, is_shallow, false);
 }
 
-std::optional<nlohmann::json> read_state_json(const std::string& path, const std::string& schema) {
+nlohmann::json read_state_json(const std::string& path, const std::string& schema) {
   const std::optional<std::string> text = state_file(path);
-  if (!text) return std::nullopt;
-  const nlohmann::json json = parse_json(*text, path);
+  if (!text) return nullptr;
+  nlohmann::json json = parse_json(*text, path);
   if (json.is_discarded() || !json.is_object())
     throw refusal("{}: is no JSON object, expected schema {}", path, schema);
   const auto found = json.find("schema");

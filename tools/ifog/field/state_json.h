@@ -14,29 +14,19 @@ namespace ifog::tools {
 // Discarded value if the text is not JSON. Throws std::runtime_error with one line if it is nested too deep.
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
 
-// nullopt: no such file. Throws std::runtime_error with one line: unreadable, not JSON, another schema.
-[[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
-                                                            const std::string& schema);
+// null: no such file. Throws std::runtime_error with one line: unreadable, not JSON, another schema.
+[[nodiscard]] nlohmann::json read_state_json(const std::string& path, const std::string& schema);
 
 // Throws std::runtime_error with one line: the file and its error.
 [[noreturn]] void refuse_keys(const std::string& path, const nlohmann::json::exception& error);
 
-// Calls `read`; a wrong or missing key becomes one line with the file's name.
-template <typename Read>
-auto with_keys(const std::string& path, Read&& read) {
-  try {
-    return read();
-  } catch (const nlohmann::json::exception& error) {
-    refuse_keys(path, error);
-  }
-}
-
-// A struct with fields() (console/json.h); nullopt: no such file. Throws as above, also for a wrong or missing key.
+// A struct (console/json.h); nullopt: no such file. Throws as above, also for a wrong or missing key.
 template <typename T>
-std::optional<T> read_state(const std::string& path, const std::string& schema) {
-  const std::optional<nlohmann::json> file = read_state_json(path, schema);
-  if (!file) return std::nullopt;
-  return with_keys(path, [&] { return std::optional(from_json<T>(*file)); });
+std::optional<T> read_state(const std::string& path, const std::string& schema) try {
+  const nlohmann::json file = read_state_json(path, schema);
+  return file.is_null() ? std::nullopt : std::optional(file.get<T>());
+} catch (const nlohmann::json::exception& error) {
+  refuse_keys(path, error);
 }
 
 template <typename T>

@@ -178,7 +178,7 @@ ordered_json sensor_json(const std::string& name, const status_t* live, const Ke
                        {"lost_bytes", live->record_lost_bytes},
                        {"written_bytes", live->record_file_bytes},
                        {"files_removed", live->record_removed}};
-  out["recordings"] = kept.recordings ? ordered_json(*kept.recordings) : ordered_json(nullptr);
+  out["recordings"] = kept.recordings;
   out["model_file"] = kept.model.identity;
   out["proposal"] = nullptr;
   if (kept.proposal)
@@ -239,7 +239,7 @@ std::vector<std::string> names_of(const Field& field, const Statuses& statuses) 
 }
 
 struct Running {
-  pid_t process = 0;  // 0: none
+  std::optional<pid_t> process{};
   Statuses statuses{};
 };
 
@@ -247,9 +247,9 @@ struct Running {
 Running running(const Field& field, double wait_s) {
   Running out;
   try {
-    out.process = running_daemon(field.state()).value_or(0);
-    if (out.process == 0) return out;
-    LiveStatus live(field.state(), out.process);
+    out.process = running_daemon(field.state());
+    if (!out.process) return out;
+    LiveStatus live(field.state(), *out.process);
     live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3)),
              [](const auto&) { return true; });
     out.statuses = live.all();
@@ -266,8 +266,8 @@ void show_status(const StatusArguments& arguments) {
   const std::string where = "state folder " + field.state();
   if (arguments.csv)
     say("{}\n", csv_line(nullptr));
-  else if (now.process != 0)
-    say("ifogd runs, process {}, {}\n", now.process, where);
+  else if (now.process)
+    say("ifogd runs, process {}, {}\n", *now.process, where);
   else
     say("ifogd does not run with {}; this is what the folder knows\n", where);
   ordered_json sensors = ordered_json::array();
@@ -281,13 +281,11 @@ void show_status(const StatusArguments& arguments) {
     else
       say_sensor(name, live, kept, field.command("adopt", name));
   }
-  if (!arguments.json.empty())
-    write_json(arguments.json,
-               ordered_json{{"schema", "ifog.status/1"},
-                            {"running", now.process != 0},
-                            {"process", now.process != 0 ? ordered_json(now.process) : ordered_json(nullptr)},
-                            {"state_folder", field.state()},
-                            {"sensors", sensors}});
+  write_json(arguments.json, ordered_json{{"schema", "ifog.status/1"},
+                                          {"running", now.process.has_value()},
+                                          {"process", now.process},
+                                          {"state_folder", field.state()},
+                                          {"sensors", sensors}});
 }
 
 struct ProposalsArguments {
@@ -307,7 +305,7 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
 void list_proposals(const ProposalsArguments& arguments) {
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  ordered_json all = ordered_json::array();
   bool damaged = false, any = false;
   for (const std::string& name : sensors_with_proposal(field.state())) {
     try {
@@ -327,15 +325,14 @@ void list_proposals(const ProposalsArguments& arguments) {
                      {"model", found->model.identity},
                      {"stale", !why_not.empty()},
                      {"report", report},
-                     {"gain", as_json(found->gain)}});
+                     {"gain", nlohmann::json(found->gain)}});
     } catch (const std::exception& error) {
       warn("{}\n", error.what());
       damaged = true;
     }
   }
   if (!any && !damaged) say("no proposal waits in {}\n", field.state());
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
+  write_json(arguments.json, ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
   if (damaged) throw Failed("damaged");
 }
 

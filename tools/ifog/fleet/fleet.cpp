@@ -72,8 +72,8 @@ class FleetRun {
     for (PopulationParameter& each : population_.parameters) describe(each);
     population_.standing_out = standing_out(population_.parameters);
     for (const FoundInGyro& each : diagnosed_.found)
-      if (std::none_of(type_.effects.begin(), type_.effects.end(),
-                       [&](const TypeCandidate& of_type) { return is_of(of_type, each.effect); }))
+      if (std::ranges::none_of(type_.effects,
+                               [&](const TypeCandidate& of_type) { return is_of(of_type, each.effect); }))
         population_.own.push_back(each);
     write();
     tell();

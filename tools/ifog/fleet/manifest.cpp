@@ -24,7 +24,7 @@ constexpr const char* kSerial =
 
 bool is_serial(const std::string& text) {
   return text.size() <= kLongestName && text.front() != '.' && text.front() != '-' &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+         std::ranges::all_of(text, [](unsigned char c) {
            return (c < 0x80 && std::isalnum(c) != 0) || c == '.' || c == '_' || c == '-';
          });
 }
@@ -62,7 +62,7 @@ Manifest parse_manifest(std::string_view text, const std::string& path) {
     FleetGyro each;
     each.serial = of.required_text("serial", kSerial);
     std::string name = each.serial;
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     if (!name.empty() && !is_serial(name))
       of.complain("serial", " = " + in_quotes(each.serial) + ": expected " + kSerial);
     else if (!names.insert(name).second)

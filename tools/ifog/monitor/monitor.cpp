@@ -134,13 +134,13 @@ void Monitor::say_what_is_waited_for() {
 }
 
 bool Monitor::received_any() const {
-  return std::any_of(sensors_.begin(), sensors_.end(),
-                     [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
+  return std::ranges::any_of(
+      sensors_, [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
 }
 
 bool Monitor::all_shown() const {
-  return !sensors_.empty() && std::all_of(sensors_.begin(), sensors_.end(),
-                                          [](const auto& entry) { return entry.second.shown(); });
+  return !sensors_.empty() &&
+         std::ranges::all_of(sensors_, [](const auto& entry) { return entry.second.shown(); });
 }
 
 bool Monitor::run() {

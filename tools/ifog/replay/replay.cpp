@@ -139,7 +139,6 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
   if (paced)
     say("lateness p50 {:.1f} µs, p99 {:.1f} µs, max {:.1f} µs\n", result.late.percentile_us(0.5),
         result.late.percentile_us(0.99), result.late.max_us());
-  if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
                          {"sent", result.sent},
                          {"of", nullptr},

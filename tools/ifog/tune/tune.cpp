@@ -27,8 +27,6 @@
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
@@ -82,9 +80,7 @@ json outcome_json(const Outcome& outcome, const std::vector<std::string>& axes) 
 json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
   json figures = json::object();
   for (const TunedFigure& f : model.figures)
-    figures[f.name] = {{"value", f.value},
-                       {"std_error", f.std_error ? json(*f.std_error) : json(nullptr)},
-                       {"unit", f.unit}};
+    figures[f.name] = {{"value", f.value}, {"std_error", f.std_error}, {"unit", f.unit}};
   if (model.walk_is_bound) figures["process_noise"]["bound"] = true;
   return {{"state", model.settings.state},
           {"state_parameters", model.settings.state_parameters},
@@ -125,9 +121,8 @@ void print_figure(const std::string& name, double before, double after, const do
 void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) {
   const TunedModel& chosen = tuning.models[tuning.chosen];
   if (!chosen.held_out) return;
-  const auto found = std::find_if(tuning.models.begin(), tuning.models.end(), [&](const TunedModel& m) {
-    return m.held_out && m.settings.state == "random-walk";
-  });
+  const auto found = std::ranges::find_if(
+      tuning.models, [&](const TunedModel& m) { return m.held_out && m.settings.state == "random-walk"; });
   const Outcome* walk = found == tuning.models.end() || &*found == &chosen ? nullptr : &*found->held_out;
   say("\nfitted to the first half, the second half as denoise makes it, deg/h\n  {:<22} {:>12} {:>12}{}\n",
       "", "measured", "denoised", walk ? "  random-walk" : "");
@@ -251,30 +246,23 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
               {"models", models}};
 }
 
-// Reads the required columns and subtracts a model's effects.
-LongCapture read_rates(const TuneArguments& options, const Model& before) {
-  LongCapture read =
-      options.input.read_long_capture(options.capture, nullptr, [&](const std::string& column) {
-        return !before.effects.empty() || column.starts_with("rate") ||
-               column.starts_with("reference_rate") || is_other_rate(column);
-      });
-  if (before.effects.empty()) return read;
-  if (options.since_power_up_s) read.set_since_power_up(*options.since_power_up_s);
-  tell_model_of_one_axis(before, options.model, read.view().axes);
-  naming(options.model, [&] { read.correct(before); });
-  return read;
-}
-
 void run_tune(const TuneArguments& options) {
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
   will_write("--write-model", options.write_model, kModelEndings);
   const Model before = options.model.empty() ? Model{} : read_model(options.model);
-  LongCapture read = read_rates(options, before);
-  read.cut(options.part, options.capture);
-  CaptureView capture = read.view();
-  leave_out(unusable_axes({capture}, {options.capture}), capture);
+  const auto wanted = [&](const std::string& column) {
+    return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate") ||
+           is_other_rate(column);
+  };
+  const PreparedCaptures prepared =
+      options.input.prepared({options.capture}, {.part = options.part,
+                                                 .model = &before,
+                                                 .model_path = options.model,
+                                                 .since_power_up_s = options.since_power_up_s,
+                                                 .wanted = wanted});
+  CaptureView capture = prepared.views.front();
   if (capture.size() < 3)
     throw refusal("{}: {} rows, expected at least 200", options.capture, capture.size());
   const SampleClock clock = sample_clock(capture.time_s);
@@ -305,8 +293,7 @@ void run_tune(const TuneArguments& options) {
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
     say("\nnoise{}{} at rest\n{}", axis.empty() ? "" : " of ", axis, report::coefficient_lines(found.terms));
-  if (!options.json_file.empty())
-    write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
+  write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
   if (!options.write_model.empty()) {
     write_file(options.write_model, model_text(model_of(before, tuning, noise, options.capture)));
     say("\nto use it: ifog denoise {}{} --model {} --output denoised.csv\n", shell_file(options.capture),

@@ -39,8 +39,8 @@ void LcmListener::listen_to(const std::string& pattern) {
 
 void LcmListener::listen_to_sensor(const std::string& name) {
   std::string upper = name;
-  std::transform(upper.begin(), upper.end(), upper.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(upper, upper.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   listen_to(upper.empty() ? "IFOG_.*" : "IFOG_" + upper + "(_STATUS|_IMU)?");
 }
 
