@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "filters/random/log_exp.h"
-
 namespace ifog::simulate {
 namespace {
 
@@ -20,6 +18,22 @@ double polynomial(const std::array<double, n>& coefficients, double x) noexcept 
 }
 
 }  // namespace
+
+double plain_log(double x) noexcept {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < 0.70710678118654752) {
+    mantissa *= 2.0;
+    --exponent;
+  }
+  // ln m = 2 artanh((m − 1)/(m + 1)); |s| < 0.172, so the 13th term is below the last bit.
+  const double s = (mantissa - 1.0) / (mantissa + 1.0);
+  const double s2 = s * s;
+  double series = 0.0;
+  for (int k = 12; k >= 0; --k) series = series * s2 + 1.0 / (2 * k + 1);
+  constexpr double kLn2 = 0.69314718055994530942;
+  return exponent * kLn2 + 2.0 * s * series;
+}
 
 double normal_quantile(double p) noexcept {
   static constexpr std::array<double, 8> kA{
@@ -62,7 +76,7 @@ double normal_quantile(double p) noexcept {
     const double r = 0.180625 - q * q;
     return q * polynomial(kA, r) / polynomial(kB, r);
   }
-  const double r = std::sqrt(-logarithm(q < 0.0 ? p : 1.0 - p));
+  const double r = std::sqrt(-plain_log(q < 0.0 ? p : 1.0 - p));
   const double value = r <= 5.0 ? polynomial(kC, r - 1.6) / polynomial(kD, r - 1.6)
                                 : polynomial(kE, r - 5.0) / polynomial(kF, r - 5.0);
   return q < 0.0 ? -value : value;

@@ -11,6 +11,9 @@
 
 namespace ifog::simulate {
 
+// Natural logarithm as a series; x > 0 and normal. Relative error below 4e-16.
+[[nodiscard]] double plain_log(double x) noexcept;
+
 // Quantile of the standard normal distribution, 0 < p < 1; relative error about 1e-15.
 [[nodiscard]] double normal_quantile(double p) noexcept;
 

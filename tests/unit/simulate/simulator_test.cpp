@@ -198,6 +198,11 @@ TEST(Scenarios, TheExamplesRun) {
 
 using ifog::simulate::Draw;
 
+TEST(Draw, LogarithmAgreesWithTheLibrarys) {
+  for (double x = 1e-16; x < 1.0; x *= 1.37)
+    EXPECT_NEAR(ifog::simulate::plain_log(x) / std::log(x), 1.0, 4e-16) << x;
+}
+
 TEST(Draw, QuantileInvertsTheErrorFunction) {
   for (double p = 1e-15; p < 0.5; p *= 1.9) {
     const double z = ifog::simulate::normal_quantile(p);
