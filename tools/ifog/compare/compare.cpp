@@ -108,32 +108,19 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   if (settings.process_noise <= 0.0) settings.process_noise = ratio * settings.measurement_noise / period_s;
 }
 
-json settings_json(const FilterSettings& s) {
-  return {{"state", s.state},
-          {"state_parameters", s.state_parameters},
-          {"process_noise", s.process_noise},
-          {"measurement_noise", s.measurement_noise},
-          {"window", s.window},
-          {"weights", s.weights},
-          {"draws", s.draws},
-          {"floor", s.floor},
-          {"follow_manoeuvres", s.follow_manoeuvres},
-          {"conserve_angle", s.conserve_angle},
-          {"seed", s.seed}};
-}
-
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
     adev[fmt::format("{:g}", kComparedTaus[i])] = row.adev_radps[i];
   json out{{"rule", row.rule},
            {"axis", axis},
-           {"settings", settings_json(settings)},
+           {"settings", filter_json(settings)},
            {"rmse_radps", row.rmse_radps},
            {"bias_radps", row.bias_radps},
            {"lag_s", row.lag_s},
            {"std_radps", row.std_radps},
            {"adev_radps", adev}};
+  out["settings"]["rule"] = row.rule;
   if (row.rule == "raw") {
     out["settings"] = nullptr;
     return out;

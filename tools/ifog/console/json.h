@@ -8,6 +8,9 @@
 #include <string>
 
 #include "drivers/capture/files/output_file.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
+#include "tools/ifog/console/errors.h"
 
 namespace nlohmann {
 
@@ -27,6 +30,28 @@ struct adl_serializer<std::optional<T>> {
 }  // namespace nlohmann
 
 namespace ifog::tools {
+
+// Discarded value if the text is not JSON. Throws std::runtime_error with one line if it is too long or nested
+// too deep. path: for messages.
+inline nlohmann::json parse_json(const std::string& text, const std::string& path) {
+  if (text.size() > kInputLimits.json_bytes) throw refusal("{}: is longer than any JSON of ours", path);
+  const auto is_shallow = [&](int depth, auto, auto&) {
+    if (static_cast<std::size_t>(depth) >= kInputLimits.json_depth)
+      throw refusal("{}: is JSON nested deeper than {}, which no file of ours is", path,
+                    kInputLimits.json_depth);
+    return true;
+  };
+  return nlohmann::json::parse(text, is_shallow, false);
+}
+
+// Throws std::runtime_error with one line: the file, and the key that is missing or wrong.
+[[noreturn]] inline void refuse_keys(const std::string& path, const nlohmann::json::exception& error) {
+  // Removes the library's prefix "[json.exception.out_of_range.403] ".
+  const std::string what = error.what();
+  const std::size_t words = what.find("] ");
+  throw refusal("{}: damaged: {}", path,
+                printable(words == std::string::npos ? what : what.substr(words + 2)));
+}
 
 template <typename T>
 nlohmann::json with_schema(const char* schema, const T& what) {

@@ -136,10 +136,10 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
 }
 
 // With a wrong --rate, steps of the time column are counted as gaps or jitter.
-void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
+void tell_other_rate(const DenoiseOptions& options, double rate_hz, std::span<const double> time_s) {
   constexpr double kAlike = 0.2;
-  if (!(rate_hz > 0.0) || table.size() < 2) return;
-  const double own_hz = 1.0 / sample_clock(table.time_s).period_s;
+  if (!(rate_hz > 0.0) || time_s.size() < 2) return;
+  const double own_hz = 1.0 / sample_clock(time_s).period_s;
   if (std::abs(rate_hz / own_hz - 1.0) > kAlike)
     warn("{}: {} is {:g} Hz, the capture's own times say {:.6g} Hz\n", options.capture,
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
@@ -165,14 +165,15 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
   LongTable table = options.input.read_long(capture);
   table.clean_and_tell(leave_out_full_scale, options.capture);
   leave_out_dead_axes(table, options.capture);
-  rows.count_from(table.origin);
+  const CaptureView view = view_of(table, options.capture);
+  rows.count_from(view.origin);
   OfflineSettings of = settings();
-  tell_other_rate(options, of.sensor.nominal_rate_hz, table);
+  tell_other_rate(options, of.sensor.nominal_rate_hz, view.time_s);
   const std::string model = of.model ? of.model->identity() : "";
-  if (of.model && !table.dead_axes.empty())
-    of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
-  rows.follow(table);
-  OfflineResult result = denoise_capture(table, options.capture, of, rows);
+  if (of.model && !view.dead_axes.empty())
+    of.model = std::make_shared<const Model>(without_axes(*of.model, view.dead_axes));
+  if (of.model) rows.follow(view);
+  OfflineResult result = denoise_capture(view, options.capture, of, rows);
   rows.reference_trial().tell(options.capture);
   result.model = model;  // of the whole file, including effects of axes that are missing here
   return result;

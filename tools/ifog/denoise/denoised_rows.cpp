@@ -18,7 +18,6 @@ void DenoisedRows::begin(const std::vector<std::string>& axes, const OfflineSett
   if (settings.model) {
     tell_model_of_one_axis(*settings.model, settings.sensor.model, axes);
     model_trial_.begin(*settings.model, axes);
-    reference_trial_.begin(axes);
   }
   moments_.resize(axes.size());
   columns_.axes.resize(axes.size());

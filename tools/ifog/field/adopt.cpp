@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog adopt and ifog revert: use a proposed model and watch it; restore the one before.
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -17,11 +19,12 @@
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
-#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/models.h"
+#include "tools/ifog/field/recorded.h"
 #include "tools/ifog/field/status_text.h"
-#include "tools/ifog/field/watch.h"
 
 namespace ifog::tools {
 namespace {
@@ -31,6 +34,111 @@ struct AdoptArguments {
   std::string sensor, json;
   double watch_s = 600.0;
 };
+
+// Observation of a sensor after the exchange of its model: notices of the daemon, and the gain compared with
+// the predicted one.
+struct Watched {
+  double seconds = 0.0;
+  bool whole = true;  // not interrupted
+  std::uint64_t statuses = 0;
+  std::int64_t divergences = 0, gated = 0;  // increase during the watch
+  std::string noticed;                      // the daemon's last notice, "" if none
+  std::vector<double> nis, whiteness;       // by axis, means over the watch
+  std::vector<AxisGain> gain;               // from the recording
+  std::string not_weighed;                  // why gain is empty
+};
+
+// Recordings before the exchange, in which effects with memory settle.
+constexpr std::size_t kFilesBefore = 3;
+constexpr std::uint64_t kMostBytesBefore = 64'000'000;
+
+// Number of rows in those recordings; unreadable recordings are skipped.
+std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
+  if (files.empty()) return 0;
+  try {
+    return read_recorded(sensor, files, field.required_config().plugin_folders).capture.view().size();
+  } catch (const std::exception&) {
+    files.clear();
+    return 0;
+  }
+}
+
+void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const Model& before,
+           const Model& after, std::uint64_t recorded_before) {
+  if (sensor.record.folder.empty()) {
+    out.not_weighed = "nothing is recorded of the sensor ([sensor.record])";
+    return;
+  }
+  try {
+    std::vector<RecordedFile> all = recorded_files(sensor), settling;
+    std::uint64_t bytes = 0;
+    while (!all.empty() && all.front().number <= recorded_before) {
+      settling.push_back(all.front());
+      bytes += all.front().bytes;
+      all.erase(all.begin());
+    }
+    while (settling.size() > kFilesBefore || bytes > kMostBytesBefore) {
+      bytes -= settling.front().bytes;
+      settling.erase(settling.begin());
+    }
+    if (all.empty()) {
+      out.not_weighed = "nothing was recorded meanwhile";
+      return;
+    }
+    const std::size_t begin = rows_to_settle(sensor, settling, field);
+    all.insert(all.begin(), settling.begin(), settling.end());
+    const Recorded recorded = read_recorded(sensor, all, field.required_config().plugin_folders);
+    out.gain = weigh_models(recorded, before, after, begin);
+    if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
+  } catch (const std::exception& error) {
+    // The history must not quote content of a recording.
+    warn("{}\n", error.what());
+    out.not_weighed = "the recordings could not be used";
+  }
+}
+
+// Observes for `seconds`, then evaluates the recording. recorded_before: number of the last recording that
+// was started before the exchange; a reload starts a new one.
+Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, const Model& before,
+              const Model& after, std::uint64_t recorded_before, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  Watched out;
+  const Clock::time_point start = Clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  std::optional<status_t> first;
+  {
+    Progress progress("watching " + sensor.name, static_cast<std::size_t>(std::max(1.0, seconds)));
+    std::int64_t last = 0;
+    const auto take = [&](const status_t& status) {
+      if (std::exchange(last, status.utime) == status.utime) return;
+      if (!first) first = status;
+      ++out.statuses;
+      out.divergences = status.divergences - first->divergences;
+      out.gated = status.gated - first->gated;
+      if (!status.notice.empty()) out.noticed = status.notice;
+      out.nis.resize(status.nis_mean.size());
+      out.whiteness.resize(status.nis_mean.size());
+      const auto n = static_cast<double>(out.statuses);
+      for (std::size_t a = 0; a < out.nis.size(); ++a) {
+        out.nis[a] += (status.nis_mean[a] - out.nis[a]) / n;
+        out.whiteness[a] += (status.whiteness[a] - out.whiteness[a]) / n;
+      }
+      progress.at(static_cast<std::size_t>(passed()));
+    };
+    try {
+      live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3)), [&](const Statuses& all) {
+        if (const auto now = all.find(sensor.name); now != all.end()) take(now->second);
+        return passed() >= seconds;
+      });
+    } catch (const std::exception& error) {
+      warn("{}\n", error.what());
+    }
+  }
+  out.seconds = std::min(passed(), seconds);
+  out.whole = passed() >= seconds;
+  weigh(out, field, sensor, before, after, recorded_before);
+  return out;
+}
 
 const char* or_none(const std::string& identity) { return identity.empty() ? "none" : identity.c_str(); }
 
@@ -154,7 +262,7 @@ void adopt(const AdoptArguments& arguments) {
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
                                 now.model, recorded_before.value_or(0), arguments.watch_s);
   tell_innovations(watched);
-  std::string text = outcome(watched);
+  std::string text = outcome(watched.gain, watched.not_weighed);
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
   say("  {}\n", text);

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 

@@ -30,9 +30,8 @@
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/models.h"
 #include "tools/ifog/field/recorded.h"
-#include "tools/ifog/field/watch.h"
 #include "tools/ifog/tune/noise_at_rest.h"
 
 namespace ifog::tools {
@@ -229,10 +228,10 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   if (since.empty()) return;
   try {
     const Recorded recorded = read_recorded(sensor_, since, field_.required_config().plugin_folders);
-    Watched watched;
-    watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
-    if (watched.gain.empty()) return;
-    result_.promise = outcome(watched);
+    const std::vector<AxisGain> gain =
+        weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
+    if (gain.empty()) return;
+    result_.promise = outcome(gain);
     const std::string text = "night of " + utc_now() + ": " + result_.promise;
     say("{}: {}\n", sensor_.name, text);
     const StateLock hand(field_.state());

@@ -2,7 +2,6 @@
 #include "tools/ifog/field/recorded.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -147,16 +146,6 @@ std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before
         {capture.axes[axis], weigh_promise({capture.time_s, old_rate[axis], new_rate[axis], at_rest})});
   }
   return out;
-}
-
-PromiseVerdict verdict_of(const std::vector<AxisGain>& gain) {
-  constexpr std::array kWorstFirst{PromiseVerdict::broken, PromiseVerdict::open, PromiseVerdict::in_part};
-  for (const PromiseVerdict each : kWorstFirst)
-    if (gain.empty() ? each == PromiseVerdict::open : std::ranges::any_of(gain, [&](const AxisGain& axis) {
-          return verdict(axis.kept) == each;
-        }))
-      return each;
-  return PromiseVerdict::kept;
 }
 
 }  // namespace ifog::tools

@@ -10,7 +10,7 @@
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
 #include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 
@@ -44,8 +44,5 @@ struct Recorded {
 // line.
 [[nodiscard]] std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before,
                                                  const Model& after, std::size_t begin);
-
-// The worst verdict of the axes.
-[[nodiscard]] PromiseVerdict verdict_of(const std::vector<AxisGain>& gain);
 
 }  // namespace ifog::tools

@@ -23,8 +23,7 @@
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/history.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 #include "tools/ifog/field/status_text.h"
 
 namespace ifog::tools {

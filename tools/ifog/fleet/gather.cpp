@@ -7,7 +7,6 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/field/state_json.h"
 #include "tools/ifog/fleet/gyro_work.h"
 #include "tools/ifog/fleet/results.h"
 

@@ -15,7 +15,6 @@
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/field/state_json.h"
 
 namespace ifog {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TypeCandidate, found_in, forms)

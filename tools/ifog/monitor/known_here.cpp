@@ -11,7 +11,7 @@
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 namespace {

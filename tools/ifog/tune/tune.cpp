@@ -158,47 +158,35 @@ json rest_noise_json(const NoiseByAxis& noise) {
   return axes;
 }
 
-std::string axis_label(const CaptureView& capture, std::size_t axis) {
-  return capture.axes[axis].empty() ? "" : capture.axes[axis] + ": ";
-}
-
-// Replaces single jumps in the capture by values in `repaired`. Other faults of the logging program are
-// noted, because a fit to such data is not a gyro's noise.
-void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
+// Noise by axis. Replaces single jumps in the capture by values in `repaired`. Other faults of the logging
+// program are noted, because a fit to such data is not a gyro's noise. An axis that is too short has no terms,
+// which is noted.
+NoiseByAxis noise_of(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<Samples>& repaired, std::vector<std::string>& notes) {
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    std::span<const double>& rate = capture.rate_radps[a];
-    const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
-    std::vector<ValueFault> faults;
-    std::optional<Samples> cleaned = without_leaps(
-        rate, rate, parts, [&](std::size_t i) { return capture.shown_time_s(i); }, faults);
-    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned));
-    find_value_faults(rate, parts, clock.period_s, faults);
-    for (const ValueFault& fault : faults) notes.push_back(axis_label(capture, a) + fault.text);
-  }
-}
-
-// An axis that is too short has none, which is noted.
-NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
-                     std::vector<std::string>& notes) {
   NoiseByAxis noise;
   bool unexplained = false;
+  const auto shown_time_s = [&](std::size_t i) { return capture.shown_time_s(i); };
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    const std::span<const double> rate = capture.rate_radps[a];
+    std::span<const double>& rate = capture.rate_radps[a];
+    const std::string& axis = capture.axes[a];
+    const auto note = [&](const std::string& text) {
+      notes.push_back((axis.empty() ? "" : axis + ": ") + text);
+    };
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
+    std::vector<ValueFault> faults;
+    std::optional<Samples> cleaned = without_leaps(rate, rate, parts, shown_time_s, faults);
+    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned));
+    find_value_faults(rate, parts, clock.period_s, faults);
+    for (const ValueFault& fault : faults) note(fault.text);
     try {
-      RestNoise found{
-          noise_coefficients(AngleSum(rate, parts), clock.period_s),
-          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.shown_time_s(i); })};
-      for (const std::string& miss : misfit_in_words(found.terms))
-        notes.push_back(axis_label(capture, a) + miss);
+      RestNoise found{noise_coefficients(AngleSum(rate, parts), clock.period_s),
+                      noise_changes(rate, parts, clock.period_s, shown_time_s)};
+      for (const std::string& miss : misfit_in_words(found.terms)) note(miss);
       unexplained = unexplained || !found.terms.left_out_hz.empty();
-      if (const std::string change = in_words(found.changes); !change.empty())
-        notes.push_back(axis_label(capture, a) + change);
-      noise[capture.axes[a]] = std::move(found);
+      if (const std::string change = in_words(found.changes); !change.empty()) note(change);
+      noise[axis] = std::move(found);
     } catch (const std::invalid_argument& error) {
-      notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
-                      error.what());
+      notes.push_back("no noise terms" + (axis.empty() ? "" : " of " + axis) + ": " + error.what());
     }
   }
   if (unexplained)
@@ -218,12 +206,9 @@ Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, con
   model.filter->measurement_noise = tuned.measurement_noise;
   model.filter->state_parameters = tuned.state_parameters;
   for (const auto& [axis, found] : noise) {
-    const auto put = [](const NoiseCoefficient& c, std::optional<double>& value) {
-      if (c.present) value = c.value;
-    };
     NoiseTerms& terms = model.noise[axis] = {};
     for (const report::NamedCoefficient& named : report::named_coefficients())
-      put(found.terms.*named.member, terms.*named.term);
+      if (const NoiseCoefficient& c = found.terms.*named.member; c.present) terms.*named.term = c.value;
   }
   if (!model.effects.empty()) return model;  // whose effects are from the captures that it names
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
@@ -273,8 +258,7 @@ void run_tune(const TuneArguments& options) {
   std::vector<std::string> notes;
   std::vector<Samples> repaired;
   repaired.reserve(capture.axes.size());
-  leave_out_leaps(capture, clock, rest, repaired, notes);
-  const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
+  const NoiseByAxis noise = noise_of(capture, clock, rest, repaired, notes);
   if (const std::string motion = in_words(rest, period, capture.shown_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
   if (const std::string slow = slow_turns_in_words(rest, period, capture.shown_time_s(0)); !slow.empty())

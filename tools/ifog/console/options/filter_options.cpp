@@ -80,4 +80,11 @@ void add_filter_options(const Command& command, FilterChoice& choice, bool with_
   }
 }
 
+nlohmann::json filter_json(const FilterSettings& settings) {
+  nlohmann::json out;
+  for (const FilterSetting& setting : filter_table())
+    std::visit([&](const auto& member) { out[setting.key] = settings.*member.setting; }, setting.member);
+  return out;
+}
+
 }  // namespace ifog::tools
