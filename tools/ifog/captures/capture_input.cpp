@@ -17,9 +17,9 @@
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -89,7 +89,12 @@ void CaptureInput::add_driver_to(const Command& command) {
                      {.type = "NAME"});
   command.add_option("--option", options, "Option of the driver; may stand several times",
                      {.type = "KEY=VALUE"});
-  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc");
+  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc",
+                     {.type = "FILE"});
+  command.before_run([this] {
+    const DriverSettings all = settings();
+    if (const auto found = all.find("dbc"); found != all.end()) will_read("--dbc", found->second);
+  });
   command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log");
 }
 
@@ -137,12 +142,6 @@ FileKind CaptureInput::kind(const InputFile& file) const {
   const FileKind found = file_kind(file);
   if (found != FileKind::unknown) return found;
   return has_driver() ? FileKind::bytes : FileKind::capture;
-}
-
-void CaptureInput::will_read(const std::string& argument, const std::string& path) const {
-  tools::will_read(argument, path);
-  const DriverSettings all = settings();
-  if (const auto found = all.find("dbc"); found != all.end()) tools::will_read("--dbc", found->second);
 }
 
 RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,

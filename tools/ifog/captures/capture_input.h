@@ -14,7 +14,7 @@
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
@@ -55,7 +55,8 @@ struct CaptureInput {
 
   // Adds the options to a command that reads captures.
   void add_to(const Command& command);
-  // Adds only the driver's options, to a command that writes its frames.
+  // Adds only the driver's options, to a command that writes its frames. The files that they name are
+  // registered as inputs of the run.
   void add_driver_to(const Command& command);
   // The given options in shell syntax: " --driver kvh1750 --option format=b".
   [[nodiscard]] std::string as_typed() const;
@@ -72,9 +73,6 @@ struct CaptureInput {
     return !columns.empty() || !time.empty() || !separator.empty() || !group.empty() || !only.empty() ||
            sample_rate_hz > 0.0;
   }
-
-  // Registers this capture and the files that reading needs as inputs of the run (command_files.h).
-  void will_read(const std::string& argument, const std::string& path) const;
 
   // Throws std::runtime_error with one line. folders: search path of plugins; empty: the standard folders.
   [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {}) const;

@@ -14,8 +14,8 @@
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -16,7 +16,7 @@
 #include "filters/model_file/model_axes.h"
 #include "filters/series/samples.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 

@@ -25,11 +25,10 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/verdict.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -214,10 +213,6 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
 }
 
 void run_compare(const CompareArguments& options) {
-  options.input.will_read("capture", options.capture);
-  will_read("--model", options.model);
-  will_write("--json", options.json_file, kJsonEndings);
-  will_write("--plot", options.plot_file);
   const PreparedCaptures prepared = options.input.prepared(
       {options.capture}, {.part = options.part, .wanted = [](const std::string& column) {
                             std::string axis;
@@ -273,11 +268,11 @@ void add_compare(const Command& program) {
       program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<CompareArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture", {.required = true});
-  command.add_option("--model", options->model, "model file whose [filter] gives the settings");
-  command.add_option("--json", options->json_file, "write the figures as JSON");
+  command.add_option("capture", options->capture, "a capture", {.required = true, .file = FileUse::read});
+  command.add_option("--model", options->model, "model file whose [filter] gives the settings", kReadsFile);
+  command.add_option("--json", options->json_file, "write the figures as JSON", kWritesJson);
   command.add_option("--plot", options->plot_file, "write a picture, .svg or .png",
-                     {.check = report::wrong_picture_name});
+                     {.check = report::wrong_picture_name, .file = FileUse::written});
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);

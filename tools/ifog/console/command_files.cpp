@@ -51,15 +51,11 @@ void will_read(const std::string& option, const std::string& path) {
 
 void will_write(const std::string& option, const std::string& path,
                 std::span<const std::string_view> endings) {
-  will_write(option, path);
-  expect_no_other_kind(option, path, endings);
-}
-
-void will_write(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   if (is_standard_output(path)) data_to_standard_output(option);
   add(option, path, true);
   expect_writable(path);
+  if (!endings.empty()) expect_no_other_kind(option, path, endings);
 }
 
 std::string written_in_words() {

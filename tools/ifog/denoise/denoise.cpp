@@ -34,11 +34,10 @@
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise.h"
@@ -145,20 +144,6 @@ void tell_other_rate(const DenoiseOptions& options, double rate_hz, std::span<co
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
 }
 
-// Registers inputs and outputs before any of them is used.
-void name_files(DenoiseOptions& options) {
-  if (!options.sensor.empty() && options.config.empty())
-    throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
-                                     ", expected --config with it, whose sensors have names");
-  options.input.will_read("CAPTURE", options.capture);
-  will_read("--model", options.model);
-  will_read("--noise", options.noise);
-  will_read("--config", options.config);
-  will_write("--output", options.output);
-  will_write("--json", options.json, kJsonEndings);
-  will_write("--plot", options.picture);
-}
-
 template <class Settings>
 OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
                             DenoisedRows& rows) {
@@ -180,7 +165,9 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
 }
 
 void run_denoise(DenoiseOptions options) {
-  name_files(options);
+  if (!options.sensor.empty() && options.config.empty())
+    throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
+                                     ", expected --config with it, whose sensors have names");
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
@@ -234,21 +221,23 @@ void add_denoise(const Command& program) {
       "CAPTURE", options->capture,
       "Capture (.csv, .csv.gz, .h5), flight recording (a file or its folder), raw bytes, candump or LCM "
       "log",
-      {.required = true});
+      {.required = true, .file = FileUse::read});
   command.add_option("-o,--output", options->output,
                      "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis",
-                     {.required = true});
+                     {.required = true, .file = FileUse::written});
   options->input.add_to(command);
   add_filter_options(command, options->filter);
   command.add_flag("--smooth", options->smooth,
                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
-  command.add_option("--model", options->model, "Model file of the sensor");
+  command.add_option("--model", options->model, "Model file of the sensor", kReadsFile);
   command.add_option(
       "--noise", options->noise,
-      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say");
+      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say",
+      kReadsFile);
   command.add_option("--config", options->config,
                      "Take all settings from the daemon's configuration; of a flight recording else those it "
-                     "was recorded with");
+                     "was recorded with",
+                     kReadsFile);
   command.add_option("--sensor", options->sensor, "Which sensor of the configuration");
   command.add_option("--rate", options->nominal_rate_hz,
                      "Nominal sample rate, Hz; else the driver's or the capture's", {.range = positive()});
@@ -266,9 +255,9 @@ void add_denoise(const Command& program) {
       {.type = "S", .range = not_negative()});
   options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",
                        "Write nothing from this time on, s");
-  command.add_option("--json", options->json, "Summary as JSON");
+  command.add_option("--json", options->json, "Summary as JSON", kWritesJson);
   command.add_option("--plot", options->picture, "Picture, .svg or .png",
-                     {.check = report::wrong_picture_name});
+                     {.check = report::wrong_picture_name, .file = FileUse::written});
   command.callback([options] { run_denoise(*options); });
 }
 

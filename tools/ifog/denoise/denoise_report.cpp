@@ -16,7 +16,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
-#include "tools/ifog/console/options/filter_options.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise.h"
 #include "tools/ifog/denoise/denoised_rows.h"

@@ -36,10 +36,10 @@ bool used(const Model* model, const std::string& channel) {
 
 // Channels that the chain uses: all, or if they are too many, those of the model.
 std::vector<CaptureView::Channel> chosen_channels(const CaptureView& capture, const Model* model) {
-  constexpr auto kMost = static_cast<std::size_t>(kMaxChannels);
+  const auto most = static_cast<std::size_t>(kMaxChannels);
   std::vector<CaptureView::Channel> out = capture.channels;
-  if (out.size() > kMost) std::erase_if(out, [&](const auto& channel) { return !used(model, channel.name); });
-  if (out.size() > kMost)
+  if (out.size() > most) std::erase_if(out, [&](const auto& channel) { return !used(model, channel.name); });
+  if (out.size() > most)
     throw refusal("the model uses {} channels, expected at most {}", out.size(), kMaxChannels);
   return out;
 }

@@ -10,9 +10,9 @@
 #include "drivers/capture/files/output_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -31,11 +31,6 @@ struct DiagnoseArguments {
 };
 
 void run_diagnose(const DiagnoseArguments& arguments) {
-  for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
-  will_read("--model", arguments.model);
-  will_write("--json", arguments.json, kJsonEndings);
-  will_write("--write-model", arguments.write_model, kModelEndings);
-  will_write("--report", arguments.report, kPageEndings);
   Model model;
   if (!arguments.model.empty()) model = read_model(arguments.model);
   const PreparedCaptures prepared = arguments.input.prepared(
@@ -75,19 +70,22 @@ void add_diagnose(const Command& program) {
   const Command command =
       program.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
   command.add_option("capture", arguments->captures, "captures of one sensor, fitted together",
-                     {.required = true});
+                     {.required = true, .file = FileUse::read});
   arguments->input.add_to(command);
   arguments->part.add_to(command);
   command.add_option("--axis", arguments->wanted.axes, "only these axes");
-  command.add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  command.add_option("--model", arguments->model, "correct with this model first; find what it leaves",
+                     kReadsFile);
   command.add_option(
       "--since-power-up", arguments->since_power_up_s,
       "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
       "and one that is found counts from power-up; default: as a recording says it",
       {.range = not_negative()});
-  command.add_option("--write-model", arguments->write_model, "write the model with what was found");
-  command.add_option("--json", arguments->json, "write the diagnosis as JSON");
-  command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
+  command.add_option("--write-model", arguments->write_model, "write the model with what was found",
+                     {.file = FileUse::written, .endings = kModelEndings});
+  command.add_option("--json", arguments->json, "write the diagnosis as JSON", kWritesJson);
+  command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page",
+                     {.file = FileUse::written, .endings = kPageEndings});
   command.add_option("--significance", arguments->wanted.options.significance,
                      "chance of a false effect, after correction for all tried",
                      {.shows_default = true, .range = within(1e-9, 0.5)});

@@ -14,11 +14,10 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
@@ -239,7 +238,6 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
 }
 
 void adopt(const AdoptArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -279,7 +277,6 @@ void adopt(const AdoptArguments& arguments) {
 }
 
 void revert(const AdoptArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -320,7 +317,7 @@ void add_adopt(const Command& program) {
   arguments->field.add_to(command);
   command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not",
                      {.shows_default = true, .type = "SECONDS", .range = within(0.0, 86400.0)});
-  command.add_option("--json", arguments->json, "write what was promised and found as JSON");
+  command.add_option("--json", arguments->json, "write what was promised and found as JSON", kWritesJson);
   command.callback([arguments] { adopt(*arguments); });
 }
 
@@ -329,7 +326,8 @@ void add_revert(const Command& program) {
   const Command command = program.add_subcommand("revert", "Take the last adoption back");
   command.add_option("sensor", arguments->sensor, "name in the daemon's configuration", {.required = true});
   arguments->field.add_to(command);
-  command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1");
+  command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1",
+                     kWritesJson);
   command.callback([arguments] { revert(*arguments); });
 }
 

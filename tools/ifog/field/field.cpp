@@ -18,15 +18,15 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/flight/flight_input.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 
 void FieldOptions::add_to(const Command& command) {
   command.add_option("--config", config,
-                     std::string("the daemon's configuration; default: ") + kServiceConfig);
+                     std::string("the daemon's configuration; default: ") + kServiceConfig, {.type = "FILE"});
   command.add_option(
       "--state", state,
       std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +

@@ -7,7 +7,7 @@
 
 #include "daemon/config/config.h"
 #include "drivers/system/fd.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 

@@ -18,14 +18,14 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
+#include "filters/effects/meaning.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/exchange.h"
@@ -82,10 +82,7 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
   std::string out;
   for (const AxisDiagnosis& axis : found)
     for (const FoundEffect& each : axis.diagnosis.effects) {
-      out += (out.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") + each.effect.form;
-      if (!each.effect.channel.empty()) out += " in " + each.effect.channel;
-      if (!each.effect.with_channel.empty())
-        out += " by " + each.effect.with_form + " in " + each.effect.with_channel;
+      out += (out.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") + name_of(each.effect);
       if (!each.effect.meaning.empty()) out += " (" + each.effect.meaning + ")";
     }
   return out;
@@ -315,7 +312,6 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
 }
 
 void run_nights(const NightArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
@@ -354,7 +350,7 @@ void add_night(const Command& program) {
   command.add_option("--most-bytes", arguments->most_bytes,
                      "of recordings, the newest; a byte takes some four of memory",
                      {.shows_default = true, .range = within(1e5, 1e12)});
-  command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1");
+  command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1", kWritesJson);
   command.callback([arguments] { run_nights(*arguments); });
 }
 

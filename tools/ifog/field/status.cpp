@@ -16,10 +16,9 @@
 #include "msgs/counters.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
@@ -170,13 +169,12 @@ ordered_json sensor_json(const std::string& name, const status_t* live, const Ke
     out["health"] = {{"nis_mean", live->nis_mean},         {"whiteness", live->whiteness},
                      {"manoeuvres", live->manoeuvres},     {"divergences", live->divergences},
                      {"out_of_range", live->out_of_range}, {"noticed", live->notice}};
-  }
-  if (live != nullptr)
     out["recorded"] = {{"deliveries", live->record_deliveries},
                        {"lost", live->record_lost},
                        {"lost_bytes", live->record_lost_bytes},
                        {"written_bytes", live->record_file_bytes},
                        {"files_removed", live->record_removed}};
+  }
   out["recordings"] = kept.recordings;
   out["model_file"] = kept.model.identity;
   out["proposal"] = nullptr;
@@ -259,7 +257,6 @@ Running running(const Field& field, double wait_s) {
 }
 
 void show_status(const StatusArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   const Running now = running(field, arguments.wait_s);
   const std::string where = "state folder " + field.state();
@@ -302,7 +299,6 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
 }
 
 void list_proposals(const ProposalsArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   ordered_json all = ordered_json::array();
   bool damaged = false, any = false;
@@ -346,7 +342,7 @@ void add_status(const Command& program) {
                      {.shows_default = true, .type = "SECONDS", .range = within(0.1, 3600.0)});
   command.add_flag("-c,--csv", arguments->csv,
                    "a line a sensor as CSV, for scripts, with the names of its columns first");
-  command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
+  command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1", kWritesJson);
   command.callback([arguments] { show_status(*arguments); });
 }
 
@@ -355,7 +351,7 @@ void add_proposals(const Command& program) {
   const Command command =
       program.add_subcommand("proposals", "List the models that the nights have proposed");
   arguments->field.add_to(command);
-  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
+  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1", kWritesJson);
   command.callback([arguments] { list_proposals(*arguments); });
 }
 

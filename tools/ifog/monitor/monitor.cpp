@@ -19,10 +19,9 @@
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 
@@ -192,7 +191,8 @@ void add_monitor(const Command& program) {
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
   command.add_option(
       "--json", options->json,
-      "Instead of the figures every message as a line of JSON to this file; - is standard output");
+      "Instead of the figures every message as a line of JSON to this file; - is standard output",
+      kWritesJson);
   command.add_option(
       "--web", options->web,
       "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
@@ -211,7 +211,6 @@ void add_monitor(const Command& program) {
     // Without a time limit, --once gives up like a script, because a daemon may never start.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
-    will_write("--json", options->json, kJsonEndings);
     Monitor monitor(*options);
     if (!monitor.run()) {
       if (const std::string others = monitor.who_publishes(); !others.empty())

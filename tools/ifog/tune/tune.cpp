@@ -28,10 +28,9 @@
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -232,10 +231,6 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
 }
 
 void run_tune(const TuneArguments& options) {
-  options.input.will_read("capture", options.capture);
-  will_read("--model", options.model);
-  will_write("--json", options.json_file, kJsonEndings);
-  will_write("--write-model", options.write_model, kModelEndings);
   const Model before = options.model.empty() ? Model{} : read_model(options.model);
   const auto wanted = [&](const std::string& column) {
     return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate") ||
@@ -292,16 +287,18 @@ void add_tune(const Command& program) {
       program.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture at rest", {.required = true});
+  command.add_option("capture", options->capture, "a capture at rest",
+                     {.required = true, .file = FileUse::read});
   command.add_option("--model", options->model,
-                     "correct with this model first; its effects stay in what is written");
+                     "correct with this model first; its effects stay in what is written", kReadsFile);
   command.add_option(
       "--since-power-up", options->since_power_up_s,
       "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
       "a recording says it",
       {.range = not_negative()});
-  command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
-  command.add_option("--json", options->json_file, "write the figures as JSON");
+  command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read",
+                     {.file = FileUse::written, .endings = kModelEndings});
+  command.add_option("--json", options->json_file, "write the figures as JSON", kWritesJson);
   // One per option, so that a following capture is not read as a state model.
   command.add_option("--state", options->states, "state models to try; may stand several times",
                      {.one_value_each = true});

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/settings/filter_settings.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
