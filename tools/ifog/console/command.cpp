@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -93,8 +93,7 @@ void follow(const OptionRule& rule, CLI::Option* option) {
                          : std::is_floating_point_v<Value>  ? ValueKind::number
                          : std::is_signed_v<Value>          ? ValueKind::whole
                                                             : ValueKind::count;
-  std::string choices;
-  for (const std::string& word : rule.choices) choices += (choices.empty() ? "" : "|") + word;
+  const std::string choices = boost::join(rule.choices, "|");
   const char* const usual = kind == ValueKind::number    ? "NUMBER"
                             : kind != ValueKind::text    ? "N"
                             : rule.file != FileUse::none ? "FILE"

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cctype>
 #include <cstddef>
 #include <cstdio>
@@ -109,15 +110,11 @@ std::string plainly(const CLI::App& command, const std::string& said) {
 using Json = nlohmann::ordered_json;
 
 // The choices in "auto|candump|bytes"; value names are in capitals.
-std::vector<std::string> choices_of(std::string_view value) {
+std::vector<std::string> choices_of(const std::string& value) {
   std::vector<std::string> words;
   const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
-  if (value.find('|') == std::string_view::npos || std::ranges::any_of(value, capital)) return words;
-  while (!value.empty()) {
-    const std::size_t end = value.find('|');
-    words.emplace_back(value.substr(0, end));
-    value = end == std::string_view::npos ? std::string_view{} : value.substr(end + 1);
-  }
+  if (value.find('|') != std::string::npos && std::ranges::none_of(value, capital))
+    boost::split(words, value, boost::is_any_of("|"));
   return words;
 }
 
@@ -143,47 +140,17 @@ Json options_of(const CLI::App& app) {
   return options;
 }
 
-constexpr std::string_view kExample = "  ifog ";
-
-std::string broken(std::string_view line, std::size_t indent, std::size_t width) {
-  std::string out(line.substr(0, indent));
-  std::size_t at = report::characters_in(out);
-  const std::size_t begin = at;
-  line.remove_prefix(indent);
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.find(' '), line.size());
-    const std::size_t word = report::characters_in(line.substr(0, end));
-    if (at > begin && at + 1 + word > width) {
-      out += "\n" + std::string(begin, ' ');
-      at = begin;
-    } else if (at > begin) {
-      out += ' ';
-      ++at;
-    }
-    out += line.substr(0, end);
-    at += word;
-    line.remove_prefix(std::min(end + 1, line.size()));
-  }
-  return out;
-}
-
-// Breaks the parser's two columns, the second of which begins at `column`, into lines of at most `width`,
-// without repeated empty lines. Examples are not broken.
-std::string broken_lines(const std::string& help, std::size_t column, std::size_t width) {
+// Breaks a text between words.
+std::string in_lines(const std::string& text, std::size_t width) {
   std::string out;
-  bool empty = false;
-  for (std::size_t from = 0; from < help.size();) {
-    const std::size_t end = std::min(help.find('\n', from), help.size());
-    const std::string_view line = std::string_view(help).substr(from, end - from);
-    from = end + 1;
-    if (line.empty() && empty) continue;
-    empty = line.empty();
-    const bool described = line.starts_with("  ") && line.size() > column && line[column - 1] == ' ';
-    if (line.starts_with(kExample) || report::characters_in(line) <= width)
-      out += line;
-    else
-      out += broken(line, described ? column : 0, width);
-    out += '\n';
+  std::size_t at = 0;
+  std::istringstream words_in(text);
+  for (std::string word; words_in >> word;) {
+    const std::size_t size = report::characters_in(word);
+    const bool fits = at == 0 || at + 1 + size <= width;
+    out += at == 0 ? "" : fits ? " " : "\n";
+    at = (fits && at > 0 ? at + 1 : 0) + size;
+    out += word;
   }
   return out;
 }
@@ -197,11 +164,21 @@ std::size_t help_width() {
   return std::clamp<std::size_t>(size.ws_col, kLeast, 2 * kLeast);
 }
 
-// Layout of --help: the parser's, with lines as long as the terminal allows.
+// Layout of --help: the parser's, with descriptions in lines as long as the terminal allows.
 class HelpFormat final : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    return broken_lines(Formatter::make_help(app, std::move(name), mode), column_width_, help_width());
+    return boost::replace_all_copy(Formatter::make_help(app, std::move(name), mode), "\n\n\n", "\n\n");
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return in_lines(option->get_description(), help_width() - column_width_);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_name(),
+                             in_lines(command->get_description(), help_width() - column_width_),
+                             column_width_);
+    return out.str();
   }
 };
 
@@ -219,9 +196,7 @@ std::string usage_error(const CLI::App& app, int argc, const char* const* argv, 
   } else if (!first.starts_with('-')) {
     what =
         first.empty() ? "no command" : "unknown command " + in_quotes(first) + did_you_mean(first, commands);
-    if (what.back() != '?')
-      for (std::size_t i = 0; i < commands.size(); ++i)
-        what += (i == 0 ? ", expected one of: " : ", ") + commands[i];
+    if (what.back() != '?') what += ", expected one of: " + boost::join(commands, ", ");
   }
   return who + ": " + what + "\n" + "`" + who + " --help` lists the options.\n";
 }

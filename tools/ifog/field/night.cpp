@@ -103,11 +103,9 @@ std::string recordings_name(const SensorConfig& sensor, const std::vector<Record
 
 // Time when the newest recording will be closed; "" if none is being written.
 std::string closing(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
-  if (files.empty() || !files.back().open) return "";
+  if (files.empty() || !files.back().open || files.back().opened == 0) return "";
   const RecordedFile& last = files.back();
-  std::tm opened{};
-  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
-  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor.record.file_s);
+  const std::time_t at = last.opened + static_cast<std::time_t>(sensor.record.file_s);
   return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}{}",
                      static_cast<double>(last.bytes) * 1e-6,
                      static_cast<double>(sensor.record.file_bytes) * 1e-6, utc_text(at),
@@ -219,7 +217,7 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   std::vector<RecordedFile> since = files;
   // By numbers, because the wall clock may have been set. If the numbering restarted, all files are newer.
   if (!last.recorded)
-    std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
+    std::erase_if(since, [&](const RecordedFile& file) { return utc_text(file.opened) < last.when; });
   else if (!since.empty() && since.back().number >= *last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.number <= *last.recorded; });
   if (since.empty()) return;

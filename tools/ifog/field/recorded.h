@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct RecordedFile {
   std::uint64_t number = 0;
   std::string path;
   std::uint64_t bytes = 0;
-  bool open = false;   // being written, or not closed properly
-  std::string opened;  // UTC, format of utc_now()
+  bool open = false;       // being written, or not closed properly
+  std::time_t opened = 0;  // 0: unknown
 };
 
 // The files in the sensor's folder, by number; empty if there is no folder.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog status: the sensors of this computer's daemon. ifog proposals: models found at night, not adopted.
+#include <boost/algorithm/string/replace.hpp>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -203,8 +204,7 @@ std::string csv_line(const ordered_json* sensor) {
       if (value.is_number() || value.is_boolean()) cell = value.dump();
     }
     if (cell.find_first_of(",\"") != std::string::npos) {
-      for (std::size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2)
-        cell.insert(at, 1, '"');
+      boost::replace_all(cell, "\"", "\"\"");
       cell = '"' + cell + '"';
     }
     out += (out.empty() ? "" : ",") + cell;

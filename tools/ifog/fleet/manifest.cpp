@@ -2,6 +2,7 @@
 #include "tools/ifog/fleet/manifest.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -61,8 +62,7 @@ Manifest parse_manifest(std::string_view text, const std::string& path) {
     TableReader of(*gyro, "gyro", path, errors);
     FleetGyro each;
     each.serial = of.required_text("serial", kSerial);
-    std::string name = each.serial;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = boost::to_lower_copy(each.serial);
     if (!name.empty() && !is_serial(name))
       of.complain("serial", " = " + in_quotes(each.serial) + ": expected " + kSerial);
     else if (!names.insert(name).second)

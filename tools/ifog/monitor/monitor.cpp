@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/predicate.hpp>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -96,11 +96,7 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
 }
 
 bool Monitor::wanted(const std::string& name) const {
-  return options_.sensor.empty() ||
-         std::equal(name.begin(), name.end(), options_.sensor.begin(), options_.sensor.end(),
-                    [](char a, char b) {
-                      return a == static_cast<char>(std::toupper(static_cast<unsigned char>(b)));
-                    });
+  return options_.sensor.empty() || boost::iequals(name, options_.sensor);
 }
 
 void Monitor::end_interval(double seconds) {

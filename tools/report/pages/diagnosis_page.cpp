@@ -23,12 +23,7 @@ std::string parameter_rows(const FoundEffect& found) {
   std::string out;
   for (const ModelParameter& p : shown_parameters(found)) {
     const FieldUnit unit = field_unit(p.unit);
-    std::string name = p.name;
-    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has its own column
-      if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
-    }
-    std::ranges::replace(name, '_', ' ');
-    out += row(escaped(name),
+    out += row(escaped(parameter_words(p.name)),
                {number_cell(with_error(p.value * unit.scale, p.std_error * unit.scale)), escaped(unit.unit)});
   }
   return out;

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <cmath>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -150,6 +151,12 @@ std::vector<ModelParameter> shown_parameters(const FoundEffect& found) {
   out[0] = {"amplitude", amplitude, along, out[0].unit};
   out[1] = {"phase", phase_deg, amplitude > 0.0 ? std::min(180.0, across / amplitude / kDegree) : 180.0, "°"};
   return out;
+}
+
+std::string parameter_words(std::string name) {
+  for (const std::string_view unit : {"_hz", "_s"})
+    if (name.ends_with(unit)) name.erase(name.size() - unit.size());
+  return boost::replace_all_copy(name, "_", " ");
 }
 
 Figure figure(const std::string& key) {
