@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as JSON of the state folder: rejected with one line, or a value that can be written.
+// Any text as JSON of the state folder or of a fleet's results: rejected with one line, or a value that can be written.
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 
-#include "tools/ifog/field/state_json.h"
+#include "tools/ifog/console/json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using ifog::tools::parse_json;

@@ -2,7 +2,7 @@
 // The commands of `ifog`. Each has its own file and adds itself to the command line.
 #pragma once
 
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 

@@ -9,9 +9,8 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -25,8 +24,6 @@ struct Convert {
 };
 
 void Convert::run() const {
-  input.will_read("FROM", from);
-  will_write("TO", to);
   expect_capture_name("TO", to, &input);
   InputFile file(from);
   const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;
@@ -61,10 +58,10 @@ void add_convert(const Command& program) {
       "FROM", state->from,
       "Capture (.csv, .csv.gz, .h5), flight recording (.ifr or its folder), bytes (.bin, .kvh), candump "
       "log (.log), LCM log",
-      {.required = true});
+      {.required = true, .file = FileUse::read});
   command.add_option("TO", state->to,
                      "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log",
-                     {.required = true});
+                     {.required = true, .file = FileUse::written});
   state->input.add_to(command);
   command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "drivers/host/plugin.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -25,23 +25,25 @@ std::string transports(const ifog_driver& table) {
   return text;
 }
 
-std::string note_of(const FoundPlugin& found) {
-  return found.hidden ? "  (not used: a folder before this one has a driver of this name)" : "";
+std::span<const ifog_option> options_of(const ifog_driver& table) {
+  const ifog_option* end = table.options;
+  while (end->key != nullptr) ++end;
+  return {table.options, end};
 }
 
 void print_driver(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
   say("{} {}: {}\n  takes {}; interface version {}\n  {}{}\n", table.name, table.version, table.summary,
-      transports(table), table.abi, found.path, note_of(found));
+      transports(table), table.abi, found.path,
+      found.hidden ? "  (not used: a folder before this one has a driver of this name)" : "");
   std::size_t width = 0;
-  for (const ifog_option* option = table.options; option->key != nullptr; ++option)
-    width = std::max(width, std::strlen(option->key));
-  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
-    std::string standard = "must be given";
-    if (option->default_value != nullptr)
-      standard =
-          option->default_value[0] == '\0' ? "default none" : std::string("default ") + option->default_value;
-    say("    {:<{}}  {}\n    {:<{}}  {}; {}\n", option->key, width, option->help, "", width, option->values,
+  for (const ifog_option& option : options_of(table)) width = std::max(width, std::strlen(option.key));
+  for (const ifog_option& option : options_of(table)) {
+    const std::string standard = option.default_value == nullptr ? "must be given"
+                                 : *option.default_value == '\0'
+                                     ? "default none"
+                                     : std::string("default ") + option.default_value;
+    say("    {:<{}}  {}\n    {:<{}}  {}; {}\n", option.key, width, option.help, "", width, option.values,
         standard);
   }
   say("\n");
@@ -50,11 +52,11 @@ void print_driver(const FoundPlugin& found) {
 nlohmann::ordered_json driver_json(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
   auto options = nlohmann::ordered_json::array();
-  for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
+  for (const ifog_option& option : options_of(table)) {
     nlohmann::ordered_json standard;  // null: required
-    if (option->default_value != nullptr) standard = option->default_value;
+    if (option.default_value != nullptr) standard = option.default_value;
     options.push_back(
-        {{"key", option->key}, {"help", option->help}, {"values", option->values}, {"default", standard}});
+        {{"key", option.key}, {"help", option.help}, {"values", option.values}, {"default", standard}});
   }
   return {{"name", table.name},
           {"version", table.version},
@@ -83,7 +85,6 @@ void write_drivers(const std::string& path, const std::vector<FoundPlugin>& all,
 }
 
 void run_drivers(const std::string& name, const std::string& json) {
-  will_write("--json", json, kJsonEndings);
   const std::vector<std::string> folders = plugin_folders();
   std::vector<FoundPlugin> all;
   if (!name.empty()) {
@@ -92,7 +93,7 @@ void run_drivers(const std::string& name, const std::string& json) {
   } else {
     all = list_plugins(folders);
   }
-  if (!json.empty()) write_drivers(json, all, folders);
+  write_drivers(json, all, folders);
   if (!name.empty()) {
     print_driver(all.front());
     return;
@@ -117,7 +118,7 @@ void add_drivers(const Command& program) {
   const Command command =
       program.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
   command.add_option("NAME", *name, "Only this driver");
-  command.add_option("--json", *json, "Write the list here");
+  command.add_option("--json", *json, "Write the list here", kWritesJson);
   command.callback([name, json] { run_drivers(*name, *json); });
 }
 

@@ -14,9 +14,8 @@
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
 #include "tools/report/scale.h"
@@ -31,8 +30,6 @@ struct PictureArguments {
 };
 
 void run_picture(const PictureArguments& a) {
-  will_read("log", a.log);
-  will_write("--output", a.picture);
   InputFile log(a.log);
   if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
     throw refusal("{}: is no log of lcm-logger", a.log);
@@ -83,12 +80,12 @@ void add_picture(const Command& program) {
   auto a = std::make_shared<PictureArguments>();
   const Command command = program.add_subcommand(
       "picture", "What the daemon published: raw against denoised, and both Allan curves");
-  command.add_option("log", a->log, "Log of lcm-logger", {.required = true});
+  command.add_option("log", a->log, "Log of lcm-logger", {.required = true, .file = FileUse::read});
   command.add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
   command.add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
   a->part.add_to(command);
   command.add_option("-o,--output", a->picture, "Picture, .svg or .png",
-                     {.required = true, .check = report::wrong_picture_name});
+                     {.required = true, .check = report::wrong_picture_name, .file = FileUse::written});
   command.callback([a] { run_picture(*a); });
 }
 

@@ -15,9 +15,9 @@
 #include "tools/ifog/captures/lcm/lcm_listener.h"
 #include "tools/ifog/captures/lcm/message_archive.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -61,11 +61,7 @@ void tell_books(const MessageArchive& messages, const std::string& folder) {
   const MessageArchive::Books books = messages.books();
   say("{}: {} messages, {} bytes written, {} lost here, {} lost on LCM\n", folder, books.received,
       messages.archive().bytes_written(), books.lost_here, books.lost_on_way);
-  if (!books.two_publishers.empty())
-    warn(
-        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages "
-        "are mixed\n",
-        folder, books.two_publishers);
+  if (!books.two_publishers.empty()) warn("{}: {}\n", folder, two_publishers_sent_on(books.two_publishers));
   if (books.restarts > 0)
     warn(
         "{}: {} times a message's seq was beyond what its sensor can have counted: treated as a new "

@@ -12,9 +12,9 @@
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
@@ -28,9 +28,6 @@ struct Simulate {
   std::optional<std::uint64_t> seed;
 
   void run() const {
-    encoding.will_read("SCENARIO", scenario);
-    will_write("--output", output);
-    will_write("--truth", truth);
     expect_capture_name("--output", output, &encoding);
     expect_ending("--truth", truth,
                   has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
@@ -64,12 +61,15 @@ void add_simulate(const Command& program) {
   auto state = std::make_shared<Simulate>();
   const Command command =
       program.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
-  command.add_option("SCENARIO", state->scenario, "Scenario (.toml)", {.required = true});
+  command.add_option("SCENARIO", state->scenario, "Scenario (.toml)",
+                     {.required = true, .file = FileUse::read});
   command.add_option("-o,--output", state->output,
-                     "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log", {.required = true});
+                     "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log",
+                     {.required = true, .file = FileUse::written});
   command.add_option("--truth", state->truth,
                      "Write what the capture does not tell: .json the parameters, .csv or .h5 the true rate "
-                     "and each effect");
+                     "and each effect",
+                     {.file = FileUse::written});
   command.add_option("--seed", state->seed, "Instead of the scenario's");
   state->encoding.add_driver_to(command);
   command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");

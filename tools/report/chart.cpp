@@ -17,26 +17,6 @@ namespace {
 constexpr double kLeft = 68.0, kRight = 16.0, kLegendRow = 17.0;
 constexpr double kCharacter = 6.9;  // mean width in the 12 px font
 
-const char* css_class(Role role) {
-  switch (role) {
-    case Role::kBefore:
-      return "before";
-    case Role::kAfter:
-      return "after";
-    case Role::kFit:
-      return "fit";
-    case Role::kSecond:
-      return "second";
-    case Role::kRaw:
-      return "raw";
-    case Role::kThird:
-      return "third";
-    case Role::kFourth:
-      return "fourth";
-  }
-  return "";
-}
-
 std::string fixed(double value) { return fmt::format("{:.1f}", value); }
 
 // Fewer ticks on low panels.
@@ -61,7 +41,7 @@ std::vector<Tick> side_by_side(const Scale& scale, double edge) {
         if (tick.major != major) continue;
         const double half = 0.5 * text_width(tick.text), at = scale(tick.at);
         const bool beyond = at + half > edge;
-        const bool room = std::none_of(occupied.begin(), occupied.end(), [&](const auto& other) {
+        const bool room = std::ranges::none_of(occupied, [&](const auto& other) {
           return at - half < other.second + kApart && at + half > other.first - kApart;
         });
         if (room && !beyond)
@@ -126,6 +106,12 @@ std::string dots(const std::vector<double>& x, const std::vector<double>& y, con
 
 }  // namespace
 
+std::string Chart::Series::style(const char* more) const {
+  constexpr const char* kKinds[] = {"line ", "dots ", "band ", "guide "};
+  constexpr const char* kRoles[] = {"before", "after", "fit", "second", "raw", "third", "fourth"};
+  return std::string(kKinds[static_cast<std::size_t>(kind)]) + more + kRoles[static_cast<std::size_t>(role)];
+}
+
 Role role_of(std::size_t index) {
   constexpr std::array kOrder{Role::kAfter, Role::kBefore, Role::kSecond,
                               Role::kThird, Role::kFourth, Role::kFit};
@@ -185,9 +171,8 @@ Chart::Legend Chart::legend(double left, double right, double top) const {
       out.rows += 1.0;
     }
     const double y = top + kLegendRow * out.rows;
-    const std::string name = css_class(s.role);
-    out.svg += s.kind == Kind::points ? "<path class=\"dots key " + name + "\" d=\"M" + fixed(at + 11.0)
-                                      : "<path class=\"line key " + name + "\" d=\"M" + fixed(at);
+    out.svg +=
+        "<path class=\"" + s.style("key ") + "\" d=\"M" + fixed(s.kind == Kind::points ? at + 11.0 : at);
     out.svg += " " + fixed(y - 4.0) + (s.kind == Kind::points ? "h0\"/>" : "h22\"/>");
     out.svg += words("tick", at + 28.0, y, "start", s.label);
     at += width + 22.0;
@@ -246,17 +231,10 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
                     fixed(f.right - f.left) + "\" height=\"" + fixed(f.bottom - f.top) + "\" viewBox=\"" +
                     box + "\">";
   for (const Series& s : series_) {
-    const std::string name = css_class(s.role);
-    const bool is_band = s.kind == Kind::band, is_dots = s.kind == Kind::points;
-    const std::string d = is_band   ? outline(s.x, s.y, s.high, sx, sy)
-                          : is_dots ? dots(s.x, s.y, sx, sy)
-                                    : path(s.x, s.y, sx, sy);
-    out += std::string("<path class=\"") +
-           (is_band                 ? "band "
-            : is_dots               ? "dots "
-            : s.kind == Kind::guide ? "guide "
-                                    : "line ") +
-           name + "\" d=\"" + d + "\"/>\n";
+    const std::string d = s.kind == Kind::band     ? outline(s.x, s.y, s.high, sx, sy)
+                          : s.kind == Kind::points ? dots(s.x, s.y, sx, sy)
+                                                   : path(s.x, s.y, sx, sy);
+    out += "<path class=\"" + s.style() + "\" d=\"" + d + "\"/>\n";
   }
   return out + "</svg>\n";
 }
@@ -290,11 +268,8 @@ std::string Chart::plot_data(const Frame& f) const {
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const Series& s = series_[i];
     constexpr const char* kKinds[] = {"line", "points", "band", "guide"};
-    const char* const kind = kKinds[static_cast<std::size_t>(s.kind)];
     nlohmann::json each{
-        {"kind", kind},
-        {"style", std::string(s.kind == Kind::points ? "dots" : kind) + " " + css_class(s.role)},
-        {"name", s.label}};
+        {"kind", kKinds[static_cast<std::size_t>(s.kind)]}, {"style", s.style()}, {"name", s.label}};
     if (const Thinned fewer = thinned(s.x, s.y); s.kind != Kind::band && fewer.x.size() < s.x.size()) {
       each["x"] = packed(fewer.x);
       each["y"] = packed(fewer.y);

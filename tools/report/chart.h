@@ -50,6 +50,9 @@ class Chart {
     std::string label;
     std::vector<double> x, y;
     std::vector<double> high;  // of a band
+
+    // Its classes in the style sheet.
+    [[nodiscard]] std::string style(const char* more = "") const;
   };
   struct Frame {
     double left, right, top, bottom;

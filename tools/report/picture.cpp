@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -120,11 +121,8 @@ std::string page_script() { return kReportScript; }
 
 std::string picture_style() {
   std::string rules = kChartStyle;
-  for (const auto& [name, colour] : kDaylight) {
-    const std::string use = "var(" + std::string(name) + ")";
-    for (std::size_t at = rules.find(use); at != std::string::npos; at = rules.find(use, at))
-      rules.replace(at, use.size(), colour);
-  }
+  for (const auto& [name, colour] : kDaylight)
+    boost::replace_all(rules, "var(" + std::string(name) + ")", colour);
   return rules;
 }
 

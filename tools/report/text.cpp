@@ -2,11 +2,14 @@
 #include "tools/report/text.h"
 
 #include <fmt/core.h>
+#include <glib.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 
 #include "drivers/ifog/quoted.h"
 
@@ -15,17 +18,8 @@ namespace {
 
 std::string with_decimals(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
-// With a true minus sign and powers of ten as superscripts.
-std::string typeset(const std::string& plain) {
-  std::string out;
-  for (const char c : plain) {
-    if (c == '-')
-      out += "−";
-    else
-      out += c;
-  }
-  return out;
-}
+// With a true minus sign.
+std::string typeset(const std::string& plain) { return boost::replace_all_copy(plain, "-", "−"); }
 
 std::string superscript(int exponent) {
   static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -40,30 +34,11 @@ int decade(double value) { return static_cast<int>(std::floor(std::log10(std::ab
 }  // namespace
 
 std::string escaped(std::string_view text) {
-  std::string out;
   // XML allows neither control characters nor invalid UTF-8; they become \xNN.
-  for (const char c : printable(text, std::numeric_limits<std::size_t>::max())) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
+  const std::string plain = printable(text, std::numeric_limits<std::size_t>::max());
+  const std::unique_ptr<char, decltype(&g_free)> markup(
+      g_markup_escape_text(plain.data(), static_cast<gssize>(plain.size())), &g_free);
+  return markup.get();
 }
 
 std::string number(double value, int digits) {

@@ -32,8 +32,8 @@ struct Key {
 struct Kind {
   const char* name;
   std::vector<Key> keys;
-  std::vector<const char*> lists;  // all are required
-  int channels = 0;                // effects: 0 none, 1 `channel`, 2 also `with_channel`
+  int channels = 0;                     // effects: 0 none, 1 `channel`, 2 also `with_channel`
+  std::vector<const char*> lists = {};  // all are required
 };
 
 [[nodiscard]] const std::vector<Kind>& channel_kinds();

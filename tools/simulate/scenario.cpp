@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -41,7 +43,11 @@ class Reader {
   Scenario read(const std::uint64_t* other_seed) {
     const toml::table file = parse_toml(read_whole_file(path_), path_);
     // First, because all drawn numbers depend on it.
-    if (const toml::node* seed = file.get("seed")) s_.seed = whole(*seed, "seed");
+    if (const toml::node* node = file.get("seed")) {
+      const auto seed = value<std::int64_t>(*node, "seed", "a whole number");
+      if (seed < 0) fail(*node, "seed", "is " + std::to_string(seed) + ", expected at least 0");
+      s_.seed = static_cast<std::uint64_t>(seed);
+    }
     if (other_seed != nullptr) s_.seed = *other_seed;
     for (auto&& [key, node] : file) top(std::string(key.str()), node);
     if (file.get("duration_s") == nullptr) fail(file, "duration_s", "is missing, expected seconds");
@@ -55,23 +61,19 @@ class Reader {
                              printable(key + " " + what, kLongestMessage));
   }
 
-  std::uint64_t whole(const toml::node& node, const std::string& key) const {
-    const auto* value = node.as_integer();
-    if (value == nullptr) fail(node, key, std::string("is ") + type_name(node) + ", expected a whole number");
-    if (value->get() < 0) fail(node, key, "is " + std::to_string(value->get()) + ", expected at least 0");
-    return static_cast<std::uint64_t>(value->get());
+  template <typename T>
+  T value(const toml::node& node, const std::string& key, const char* expected) const {
+    const std::optional<T> found = node.value_exact<T>();
+    if (!found) fail(node, key, std::string("is ") + type_name(node) + ", expected " + expected);
+    return *found;
   }
 
   std::string string(const toml::node& node, const std::string& key) const {
-    const auto* value = node.as_string();
-    if (value == nullptr) fail(node, key, std::string("is ") + type_name(node) + ", expected a string");
-    return value->get();
+    return value<std::string>(node, key, "a string");
   }
 
   bool flag(const toml::node& node, const std::string& key) const {
-    const auto* value = node.as_boolean();
-    if (value == nullptr) fail(node, key, std::string("is ") + type_name(node) + ", expected true or false");
-    return value->get();
+    return value<bool>(node, key, "true or false");
   }
 
   double plain(const toml::node& node, const std::string& key) const {
@@ -200,20 +202,16 @@ class Reader {
   void noise(const toml::node& node) {
     const toml::table* table = node.as_table();
     if (table == nullptr) fail(node, "noise", std::string("is ") + type_name(node) + ", expected a table");
+    static const std::map<std::string_view, double NoiseLevels::*> kLevels{{"Q", &NoiseLevels::Q},
+                                                                           {"N", &NoiseLevels::N},
+                                                                           {"B", &NoiseLevels::B},
+                                                                           {"K", &NoiseLevels::K},
+                                                                           {"R", &NoiseLevels::R}};
     for (auto&& [name, value] : *table) {
       const std::string key = "noise." + std::string(name.str());
-      if (name.str() == "Q")
-        s_.noise.Q = not_negative(value, key);
-      else if (name.str() == "N")
-        s_.noise.N = not_negative(value, key);
-      else if (name.str() == "B")
-        s_.noise.B = not_negative(value, key);
-      else if (name.str() == "K")
-        s_.noise.K = not_negative(value, key);
-      else if (name.str() == "R")
-        s_.noise.R = number(value, key);
-      else
-        fail(value, key, "is unknown, expected Q, N, B, K or R");
+      const auto level = kLevels.find(name.str());
+      if (level == kLevels.end()) fail(value, key, "is unknown, expected Q, N, B, K or R");
+      s_.noise.*level->second = name.str() == "R" ? number(value, key) : not_negative(value, key);
     }
   }
 
@@ -256,8 +254,7 @@ class Reader {
   }
 
   void channel_name(const toml::node& node, const std::string& name) const {
-    const bool in_use =
-        std::any_of(s_.channels.begin(), s_.channels.end(), [&](const Recipe& c) { return c.name == name; });
+    const bool in_use = std::ranges::any_of(s_.channels, [&](const Recipe& c) { return c.name == name; });
     if (name.empty() || name == "rate" || name == "time_s" ||
         name.find_first_of(", \"\n") != std::string::npos || name.find('_') == std::string::npos || in_use)
       fail(node, "channel.name", "is " + in_quotes(name) + ", expected NAME_UNIT, used once");

@@ -118,7 +118,7 @@ double table(const Recipe& e, double x) {
   const std::vector<double>& values = e.list.at("values");
   const double period = e["period"];
   if (period > 0.0) x -= period * std::floor((x - knots.front()) / period);
-  const auto above = std::upper_bound(knots.begin(), knots.end(), x);
+  const auto above = std::ranges::upper_bound(knots, x);
   if (above == knots.begin()) return values.front();
   const auto i = static_cast<std::size_t>(above - knots.begin()) - 1;
   if (above == knots.end()) {

@@ -177,8 +177,8 @@ class Simulator {
     for (std::size_t i = 0; i < grid_.samples; ++i) {
       const bool lost = draw.chance(s_.missing_rows);
       const double t = grid_.time(i);
-      const bool gap = std::any_of(s_.gaps.begin(), s_.gaps.end(),
-                                   [t](const auto& g) { return t >= g.first && t < g.second; });
+      const bool gap =
+          std::ranges::any_of(s_.gaps, [t](const auto& g) { return t >= g.first && t < g.second; });
       if (!lost && !gap) kept.push_back(i);
     }
     const auto keep = [&](std::vector<double>& v) {

@@ -155,7 +155,7 @@ class Checks:
         text = page("ifog-scenario.5")
         parts = (SOURCE / "tools/simulate/recipe.cpp").read_text().split("complete_numbers")[0]
         reader = (SOURCE / "tools/simulate/scenario.cpp").read_text()
-        words = set(re.findall(r'\{"(\w+)"', parts)) | set(re.findall(r'\bkey == "(\w+)"', reader)) | set(re.findall(r'local == "(\w+)"', reader))
+        words = set(re.findall(r'[{(]"(\w+)"', parts)) | set(re.findall(r'\bkey == "(\w+)"', reader)) | set(re.findall(r'local == "(\w+)"', reader))
         assert len(words) > 80, words
         holds(text, words, "ifog-scenario(5)")
 

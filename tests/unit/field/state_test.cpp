@@ -14,7 +14,7 @@
 #include "drivers/transport/clock.h"
 #include "tests/unit/test.h"
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/models.h"
 #include "tools/ifog/field/recorded.h"
 
 namespace ifog::tools {

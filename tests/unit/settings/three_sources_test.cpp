@@ -7,7 +7,7 @@
 #include "filters/settings/filter_table.h"
 #include "tests/unit/test.h"
 #include "tools/ifog/console/command_line.h"
-#include "tools/ifog/console/options/filter_options.h"
+#include "tools/ifog/console/filter_options.h"
 
 namespace {
 

@@ -16,9 +16,8 @@
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
@@ -181,9 +180,6 @@ struct AllanArguments {
 };
 
 void run_allan(AllanArguments& a) {
-  for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
-  will_write("--json", a.json, kJsonEndings);
-  will_write("--plot", a.picture);
   a.options.kind = a.estimator == "modified"   ? Deviation::kModified
                    : a.estimator == "hadamard" ? Deviation::kHadamard
                                                : Deviation::kAllan;
@@ -203,7 +199,7 @@ void run_allan(AllanArguments& a) {
   }
   for (const AllanRecord& record : records) print_allan(record, a.options);
   if (records.size() > 1) print_comparison(records);
-  if (!a.json.empty()) write_json(a.json, allan_json(records, a.options), 1);
+  write_json(a.json, allan_json(records, a.options), 1);
   if (!a.picture.empty()) draw_allan(a.picture, records);
 }
 
@@ -216,7 +212,7 @@ void add_allan(const Command& program) {
       "allan",
       "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");
   command.add_option("capture", a->captures, "Captures, or files written by ifog denoise",
-                     {.required = true});
+                     {.required = true, .file = FileUse::read});
   a->input.add_to(command);
   command.add_option("--axis", a->options.axis, "Only this axis (x, y, …)");
   command.add_option("--tau", a->options.tau_s,
@@ -239,9 +235,9 @@ void add_allan(const Command& program) {
                    "Thêo1 beyond a quarter of the longest stretch, up to three quarters of it");
   command.add_flag("--minus-reference", a->options.minus_reference, "Analyse rate less reference rate");
   a->options.part.add_to(command);
-  command.add_option("--json", a->json, "Write the analysis here, in SI");
+  command.add_option("--json", a->json, "Write the analysis here, in SI", kWritesJson);
   command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)",
-                     {.check = report::wrong_picture_name});
+                     {.check = report::wrong_picture_name, .file = FileUse::written});
   command.callback([a] { run_allan(*a); });
 }
 

@@ -39,8 +39,8 @@ std::string file_name(const AllanRecord& record) {
 }
 
 bool several_files(const std::vector<AllanRecord>& records) {
-  return std::any_of(records.begin(), records.end(),
-                     [&](const AllanRecord& r) { return r.capture != records.front().capture; });
+  return std::ranges::any_of(records,
+                             [&](const AllanRecord& r) { return r.capture != records.front().capture; });
 }
 
 std::string title_of(const AllanRecord& record, bool several) {
@@ -53,8 +53,7 @@ Curve curve_of(const AllanRecord& record, Extent& extent) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < record.points.size(); ++i)
     if (record.points[i].variance > 0.0) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return record.tau_s[a] < record.tau_s[b]; });
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return record.tau_s[a] < record.tau_s[b]; });
   Curve curve;
   const auto add = [&](double tau_s, double variance, const AllanInterval& interval) {
     curve.tau_s.push_back(tau_s);

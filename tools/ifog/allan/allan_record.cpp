@@ -83,8 +83,8 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
 Samples less_reference(const std::string& name, const LongTable& table, std::span<const double> rate,
                        const std::string& axis) {
   const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
-  const auto column = std::find_if(table.columns.begin(), table.columns.end(),
-                                   [&](const LongColumn& c) { return c.name == wanted; });
+  const auto column =
+      std::ranges::find_if(table.columns, [&](const LongColumn& c) { return c.name == wanted; });
   if (column == table.columns.end())
     throw refusal("{}: no column {}, expected one for --minus-reference", name, wanted);
   const std::span<const double> reference = column->values;
@@ -124,7 +124,7 @@ std::vector<LoggedRate> rates_of(const AnalysedPart& part, const std::string& wa
   std::vector<std::string> axes, left_out;
   for (const LongColumn& column : part.table.columns) {
     if (!signal_of(column.name, signal, axis)) continue;
-    if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+    if (std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
     if (!wanted.empty() && axis != wanted) continue;
     if (is_dead(rows.of(column.values)))
       left_out.push_back(axis.empty() ? signal : signal + "_" + axis);

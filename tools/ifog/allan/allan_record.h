@@ -45,7 +45,6 @@ struct AllanRecord {
   double sample_rate_hz = 0.0;
   std::size_t samples = 0, missing = 0, gaps = 0, longest = 0;
   double mean_radps = 0.0;
-  double worst_jitter_s = 0.0;
   std::vector<double> tau_s;
   std::vector<DeviationPoint> points;
   std::vector<AllanInterval> intervals;

@@ -140,10 +140,12 @@ AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptio
   record.axis = logged.axis;
   record.signal = signal;
   record.sample_rate_hz = rounded_rate(logged.of.clock.period_s);
-  record.worst_jitter_s = logged.of.clock.worst_jitter_s;
   record.gaps = logged.of.clock.gaps;
   const double period = 1.0 / record.sample_rate_hz;
   note_holes(logged, options.refuse_gaps, record);
+  const auto add = [&](const std::string& text) {
+    record.notes.push_back(name + ": " + column + ": " + text);
+  };
 
   const std::vector<Stretch> parts =
       common(stretches(logged.of.time_s, logged.rate, logged.of.clock), rest.at_rest);
@@ -156,8 +158,7 @@ AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptio
     cleaned = without_leaps(logged.rate, logged.rate, parts, shown_time_s, record.findings);
   const std::span<const double> rate = cleaned ? *cleaned : logged.rate;
   if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
-  for (const ValueFault& found : record.findings)
-    record.notes.push_back(name + ": " + column + ": " + found.text);
+  for (const ValueFault& found : record.findings) add(found.text);
   const AngleSum sum(rate, parts);
   record.samples = sum.samples();
   record.longest = sum.longest();
@@ -165,18 +166,15 @@ AllanRecord analyse(const LoggedRate& logged, const Rest& rest, const AllanOptio
   if (record.longest < 2)
     throw refusal("{}: {} has no two samples in a row, expected a record without so many gaps", name, column);
   if (sum.filled() > 0)
-    record.notes.push_back(name + ": " + column + ": averages reach across " + std::to_string(sum.filled()) +
-                           (sum.filled() == 1 ? " missing sample" : " missing samples") +
-                           ", filled with the mean of their neighbours: at most 2 % of a variance");
+    add("averages reach across " + std::to_string(sum.filled()) +
+        (sum.filled() == 1 ? " missing sample" : " missing samples") +
+        ", filled with the mean of their neighbours: at most 2 % of a variance");
   if (sum.parts().size() > 1)
     record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(sum.parts().size()) +
                            " stretches; averages reach across no hole between them, the longest stretch is " +
                            six_digits(static_cast<double>(record.longest) * period) + " s");
 
   measure(logged, sum, options, period, record);
-  const auto add = [&](const std::string& text) {
-    record.notes.push_back(name + ": " + column + ": " + text);
-  };
   const auto fits_badly = [&](const std::string& text) { record.findings.push_back({"curve", text}); };
   if (record.fit) {
     if (const std::string miss = curve_miss_in_words(*record.fit); !miss.empty()) fits_badly(miss);

@@ -16,9 +16,10 @@
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
+#include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -88,7 +89,12 @@ void CaptureInput::add_driver_to(const Command& command) {
                      {.type = "NAME"});
   command.add_option("--option", options, "Option of the driver; may stand several times",
                      {.type = "KEY=VALUE"});
-  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc");
+  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc",
+                     {.type = "FILE"});
+  command.before_run([this] {
+    const DriverSettings all = settings();
+    if (const auto found = all.find("dbc"); found != all.end()) will_read("--dbc", found->second);
+  });
   command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log");
 }
 
@@ -136,12 +142,6 @@ FileKind CaptureInput::kind(const InputFile& file) const {
   const FileKind found = file_kind(file);
   if (found != FileKind::unknown) return found;
   return has_driver() ? FileKind::bytes : FileKind::capture;
-}
-
-void CaptureInput::will_read(const std::string& argument, const std::string& path) const {
-  tools::will_read(argument, path);
-  const DriverSettings all = settings();
-  if (const auto found = all.find("dbc"); found != all.end()) tools::will_read("--dbc", found->second);
 }
 
 RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
@@ -236,18 +236,39 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   return table;
 }
 
-LongCapture CaptureInput::read_long_capture(const std::string& path, std::string* sha256,
-                                            const LongTableSink::Wanted& wanted) const {
-  InputFile file(path);
-  Sha256 hash;
-  if (sha256) file.observe([&hash](std::string_view bytes) { hash.add(bytes); });
-  LongTable table = read_long(file, wanted);
-  if (sha256) {
-    file.read_to_the_end();
-    *sha256 = hash.hex();
+PreparedCaptures CaptureInput::prepared(const std::vector<std::string>& paths, const Preparation& how) const {
+  PreparedCaptures out;
+  for (const std::string& path : paths) {
+    InputFile file(path);
+    Sha256 hash;
+    if (how.hashed) file.observe([&hash](std::string_view bytes) { hash.add(bytes); });
+    LongTable table = read_long(file, how.wanted);
+    if (how.hashed) file.read_to_the_end();
+    out.hashes.push_back(how.hashed ? hash.hex() : "");
+    table.clean_and_tell(leave_out_repeats, path);
+    out.read.emplace_back(std::move(table), path);
   }
-  table.clean_and_tell(leave_out_repeats, path);
-  return {std::move(table), path};
+  std::vector<CaptureView> as_sent;
+  std::vector<TimePart::Rows> rows;
+  for (std::size_t c = 0; c < paths.size(); ++c) {
+    CaptureView& whole = out.views.emplace_back(out.read[c].view());
+    if (how.since_power_up_s) whole.since_power_up_s = how.since_power_up_s;
+    rows.push_back(how.part.rows(whole.time_s, whole.origin, paths[c]));
+    as_sent.push_back(rows_of(whole, rows.back()));
+  }
+  const std::vector<std::string> unusable = unusable_axes(as_sent, paths);
+  if (how.model != nullptr && !how.model->effects.empty()) {
+    tell_model_of_one_axis(*how.model, how.model_path, out.views.front().axes);
+    for (CaptureView& view : out.views) {
+      out.corrected.push_back(naming(how.model_path, [&] { return compensated_rates(view, *how.model); }));
+      view.rate_radps.assign(out.corrected.back().begin(), out.corrected.back().end());
+    }
+  }
+  for (std::size_t c = 0; c < paths.size(); ++c) {
+    out.views[c] = rows_of(std::move(out.views[c]), rows[c]);
+    leave_out(unusable, out.views[c]);
+  }
+  return out;
 }
 
 }  // namespace ifog::tools

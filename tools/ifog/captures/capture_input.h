@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,27 @@
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
+
+// What an analysis wants of the captures of one sensor.
+struct Preparation {
+  TimePart part;
+  const Model* model = nullptr;                 // its effects are subtracted; null: none
+  std::string model_path = {};                  // for messages
+  std::optional<double> since_power_up_s = {};  // instead of what a recording says
+  LongTableSink::Wanted wanted = {};            // columns; empty: all
+  bool hashed = false;
+};
+
+// Without the rows outside of the part and the axes that are not usable in all captures.
+struct PreparedCaptures {
+  std::vector<LongCapture> read;
+  std::vector<std::vector<Samples>> corrected;  // rates
+  std::vector<CaptureView> views;               // of these
+  std::vector<std::string> hashes;              // SHA-256 of the unpacked files; "" unless wanted
+};
 
 struct CaptureInput {
   std::string driver;                // --driver NAME; "dbc" if only --dbc is given
@@ -36,7 +55,8 @@ struct CaptureInput {
 
   // Adds the options to a command that reads captures.
   void add_to(const Command& command);
-  // Adds only the driver's options, to a command that writes its frames.
+  // Adds only the driver's options, to a command that writes its frames. The files that they name are
+  // registered as inputs of the run.
   void add_driver_to(const Command& command);
   // The given options in shell syntax: " --driver kvh1750 --option format=b".
   [[nodiscard]] std::string as_typed() const;
@@ -53,9 +73,6 @@ struct CaptureInput {
     return !columns.empty() || !time.empty() || !separator.empty() || !group.empty() || !only.empty() ||
            sample_rate_hz > 0.0;
   }
-
-  // Registers this capture and the files that reading needs as inputs of the run (command_files.h).
-  void will_read(const std::string& argument, const std::string& path) const;
 
   // Throws std::runtime_error with one line. folders: search path of plugins; empty: the standard folders.
   [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {}) const;
@@ -74,9 +91,9 @@ struct CaptureInput {
   RowNotes read_rows(InputFile& file, RowSink& sink) const;
   // Reads a table of any length with the wanted columns; empty: all.
   [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
-  // Reads a capture. `sha256` receives the hash of the unpacked file unless it is null.
-  [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
-                                              const LongTableSink::Wanted& wanted = {}) const;
+  // Reads the captures of one sensor. Throws as above, and as unusable_axes() and compensated_rates().
+  [[nodiscard]] PreparedCaptures prepared(const std::vector<std::string>& paths,
+                                          const Preparation& how) const;
   // Reads a file of columns even if a driver is given, which is then for writing.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 

@@ -14,8 +14,8 @@
 #include "filters/model_file/covariance.h"
 #include "filters/model_file/form.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -109,17 +109,6 @@ CaptureView rows_of(CaptureView view, const TimePart::Rows& rows) {
   return view;
 }
 
-void LongCapture::cut(const TimePart& part, const std::string& name) { view_ = this->part(part, name); }
-
-CaptureView LongCapture::part(const TimePart& part, const std::string& name) const {
-  return rows_of(view_, part.rows(view_.time_s, view_.origin, name));
-}
-
-void LongCapture::correct(const Model& model) {
-  corrected_ = compensated_rates(view_, model);
-  view_.rate_radps.assign(corrected_.begin(), corrected_.end());
-}
-
 void tell_model_of_one_axis(const Model& model, const std::string& path,
                             const std::vector<std::string>& axes) {
   if (const std::string remark = effects_of_no_axis(model, axes); !remark.empty())
@@ -128,7 +117,7 @@ void tell_model_of_one_axis(const Model& model, const std::string& path,
 
 Model without_axes(Model model, const std::vector<std::string>& axes) {
   const auto is_out = [&](const std::string& axis) {
-    return !axis.empty() && std::find(axes.begin(), axes.end(), axis) != axes.end();
+    return !axis.empty() && std::ranges::find(axes, axis) != axes.end();
   };
   std::vector<Effect> effects;
   std::vector<std::size_t> rows;  // rows of the covariance that remain

@@ -16,7 +16,7 @@
 #include "filters/model_file/model_axes.h"
 #include "filters/series/samples.h"
 #include "tools/ifog/captures/table/long_table.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
@@ -60,17 +60,9 @@ class LongCapture {
       : table_(std::move(table)), view_(view_of(table_, path)) {}
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
-  void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }
-  // The rows inside; `name` is for messages.
-  [[nodiscard]] CaptureView part(const TimePart& part, const std::string& name) const;
-  // Drops the rows outside. name: for messages. Throws as TimePart::rows().
-  void cut(const TimePart& part, const std::string& name);
-  // Subtracts the model's effects from the rates. Throws as compensated_rates().
-  void correct(const Model& model);
 
  private:
   LongTable table_;
-  std::vector<Samples> corrected_;
   CaptureView view_;  // of table_
 };
 

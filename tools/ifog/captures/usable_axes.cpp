@@ -16,60 +16,54 @@ namespace {
 
 std::string rate_of(const std::string& axis) { return axis.empty() ? "rate" : "rate_" + axis; }
 
-void tell_missing(const std::string& name, const std::string& axis, const CaptureView& capture,
-                  std::span<const double> rate) {
-  const auto none = [](double value) { return std::isnan(value); };
-  const auto missing = static_cast<std::size_t>(std::ranges::count_if(rate, none));
-  if (missing == 0) return;
-  const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
-  warn("{}: {}\n", name, missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)));
-}
+struct RateValues {
+  std::size_t values = 0, missing = 0, first_missing = 0;
+  double first = 0.0;
+  bool repeats = true;  // the first value
 
-bool has_value(std::span<const double> values) {
-  return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
-}
+  // As many as in filters/chain/sensor_check.h: coarse values also repeat.
+  [[nodiscard]] bool stuck() const { return repeats && values > 100; }
+};
 
-// As many as in filters/chain/sensor_check.h: coarse values also repeat.
-bool repeats_one_value(std::span<const double> values) {
-  constexpr std::ptrdiff_t kFewest = 100;
-  const auto is_value = [](double value) { return !std::isnan(value); };
-  const auto first = std::find_if(values.begin(), values.end(), is_value);
-  return std::all_of(first, values.end(),
-                     [&](double value) { return !is_value(value) || value == *first; }) &&
-         std::count_if(first, values.end(), is_value) > kFewest;
-}
-
-void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {
-  const double value = *std::find_if(rate.begin(), rate.end(), [](double v) { return !std::isnan(v); });
-  warn("{}: {} is {:.6g} rad/s in all of its {} rows: the axis is stuck, and dropped\n", name, rate_of(axis),
-       value, rate.size());
+RateValues values_of(std::span<const double> rate) {
+  RateValues out;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    if (std::isnan(rate[i])) {
+      if (out.missing++ == 0) out.first_missing = i;
+      continue;
+    }
+    if (out.values++ == 0) out.first = rate[i];
+    out.repeats = out.repeats && rate[i] == out.first;
+  }
+  return out;
 }
 
 // Unusable axes of one capture.
 std::vector<std::string> unusable(const CaptureView& capture, const std::string& name) {
-  std::vector<std::string> missing, stuck;
-  for (std::size_t a = 0; a < capture.axes.size(); ++a)
-    if (!has_value(capture.rate_radps[a]))
-      missing.push_back(capture.axes[a]);
-    else if (repeats_one_value(capture.rate_radps[a]))
-      stuck.push_back(capture.axes[a]);
-  if (missing.size() == capture.axes.size()) refuse_without_rates(name, capture.size());
+  std::vector<RateValues> axes;
+  for (const std::span<const double> rate : capture.rate_radps) axes.push_back(values_of(rate));
+  const auto dead = std::ranges::count(axes, 0U, &RateValues::values);
+  if (dead == std::ssize(axes)) refuse_without_rates(name, capture.size());
   // If no other axis is left, the command reports the stuck ones itself.
-  if (missing.size() + stuck.size() == capture.axes.size()) stuck.clear();
-  const auto is_in = [](const std::vector<std::string>& axes, const std::string& axis) {
-    return std::find(axes.begin(), axes.end(), axis) != axes.end();
-  };
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    const std::string& axis = capture.axes[a];
-    if (is_in(missing, axis))
-      tell_left_out(name, rate_of(axis), capture.size());
-    else if (is_in(stuck, axis))
-      tell_stuck(name, axis, capture.rate_radps[a]);
-    else
-      tell_missing(name, axis, capture, capture.rate_radps[a]);
+  const bool others = dead + std::ranges::count_if(axes, &RateValues::stuck) < std::ssize(axes);
+  std::vector<std::string> out;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const std::string column = rate_of(capture.axes[a]);
+    if (axes[a].values == 0) {
+      tell_left_out(name, column, capture.size());
+    } else if (axes[a].stuck() && others) {
+      warn("{}: {} is {:.6g} rad/s in all of its {} rows: the axis is stuck, and dropped\n", name, column,
+           axes[a].first, capture.size());
+    } else {
+      if (axes[a].missing > 0)
+        warn("{}: {}\n", name,
+             missing_in_words(column, axes[a].missing, capture.size(),
+                              capture.shown_time_s(axes[a].first_missing)));
+      continue;
+    }
+    out.push_back(capture.axes[a]);
   }
-  missing.insert(missing.end(), stuck.begin(), stuck.end());
-  return missing;
+  return out;
 }
 
 }  // namespace
@@ -101,7 +95,7 @@ std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
   std::vector<std::string> all;
   for (std::size_t c = 0; c < captures.size(); ++c)
     for (std::string& axis : unusable(captures[c], names[c]))
-      if (std::find(all.begin(), all.end(), axis) == all.end()) all.push_back(std::move(axis));
+      if (std::ranges::find(all, axis) == all.end()) all.push_back(std::move(axis));
   for (std::size_t c = 0; c < captures.size(); ++c) {
     CaptureView left = captures[c];
     leave_out(all, left);
@@ -112,7 +106,7 @@ std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
 
 void leave_out(const std::vector<std::string>& axes, CaptureView& capture) {
   for (const std::string& axis : axes) {
-    const auto found = std::find(capture.axes.begin(), capture.axes.end(), axis);
+    const auto found = std::ranges::find(capture.axes, axis);
     if (found == capture.axes.end()) continue;
     const auto at = found - capture.axes.begin();
     capture.axes.erase(found);

@@ -23,15 +23,12 @@
 #include "filters/settings/filter_table.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/verdict.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -110,45 +107,32 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   if (settings.process_noise <= 0.0) settings.process_noise = ratio * settings.measurement_noise / period_s;
 }
 
-json settings_json(const FilterSettings& s) {
-  return {{"state", s.state},
-          {"state_parameters", s.state_parameters},
-          {"process_noise", s.process_noise},
-          {"measurement_noise", s.measurement_noise},
-          {"window", s.window},
-          {"weights", s.weights},
-          {"draws", s.draws},
-          {"floor", s.floor},
-          {"follow_manoeuvres", s.follow_manoeuvres},
-          {"conserve_angle", s.conserve_angle},
-          {"seed", s.seed}};
-}
-
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-    adev[fmt::format("{:g}", kComparedTaus[i])] = as_json(row.adev_radps[i]);
+    adev[fmt::format("{:g}", kComparedTaus[i])] = row.adev_radps[i];
   json out{{"rule", row.rule},
            {"axis", axis},
-           {"settings", settings_json(settings)},
-           {"rmse_radps", as_json(row.rmse_radps)},
-           {"bias_radps", as_json(row.bias_radps)},
-           {"lag_s", as_json(row.lag_s)},
+           {"settings", filter_json(settings)},
+           {"rmse_radps", row.rmse_radps},
+           {"bias_radps", row.bias_radps},
+           {"lag_s", row.lag_s},
            {"std_radps", row.std_radps},
            {"adev_radps", adev}};
+  out["settings"]["rule"] = row.rule;
   if (row.rule == "raw") {
     out["settings"] = nullptr;
     return out;
   }
   out["heading_end_rad"] = row.heading_end_rad;
   out["heading_max_rad"] = row.heading_max_rad;
-  out["whiteness"] = {{"lag1", as_json(row.whiteness_lag1)}, {"excess", as_json(row.whiteness_excess)}};
-  out["nis_mean"] = as_json(row.nis_mean);
-  out["nis_typical"] = as_json(row.nis_typical);
+  out["whiteness"] = {{"lag1", row.whiteness_lag1}, {"excess", row.whiteness_excess}};
+  out["nis_mean"] = row.nis_mean;
+  out["nis_typical"] = row.nis_typical;
   out["share_at_rest"] = row.share_at_rest;
   json steps = json::array();
   for (const StepResponse& step : row.step)
-    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", as_json(step.samples)}});
+    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", step.samples}});
   out["step_response"] = steps;
   return out;
 }
@@ -229,17 +213,13 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
 }
 
 void run_compare(const CompareArguments& options) {
-  options.input.will_read("capture", options.capture);
-  will_read("--model", options.model);
-  will_write("--json", options.json_file, kJsonEndings);
-  will_write("--plot", options.plot_file);
-  LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
-    std::string axis;
-    return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) || is_other_rate(column);
-  });
-  read.cut(options.part, options.capture);
-  CaptureView capture = read.view();
-  leave_out(unusable_axes({capture}, {options.capture}), capture);
+  const PreparedCaptures prepared = options.input.prepared(
+      {options.capture}, {.part = options.part, .wanted = [](const std::string& column) {
+                            std::string axis;
+                            return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) ||
+                                   is_other_rate(column);
+                          }});
+  const CaptureView& capture = prepared.views.front();
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)
@@ -274,8 +254,7 @@ void run_compare(const CompareArguments& options) {
       "that of a normal law; steps of 20 and 5 sigma in samples to 90 %\n");
   const std::vector<Verdict> verdicts =
       print_axes(capture, result, !motion.words.empty() && !motion.left_out);
-  if (!options.json_file.empty())
-    write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
+  write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules, verdicts);
     say("picture: {}\n", options.plot_file);
@@ -289,11 +268,11 @@ void add_compare(const Command& program) {
       program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<CompareArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture", {.required = true});
-  command.add_option("--model", options->model, "model file whose [filter] gives the settings");
-  command.add_option("--json", options->json_file, "write the figures as JSON");
+  command.add_option("capture", options->capture, "a capture", {.required = true, .file = FileUse::read});
+  command.add_option("--model", options->model, "model file whose [filter] gives the settings", kReadsFile);
+  command.add_option("--json", options->json_file, "write the figures as JSON", kWritesJson);
   command.add_option("--plot", options->plot_file, "write a picture, .svg or .png",
-                     {.check = report::wrong_picture_name});
+                     {.check = report::wrong_picture_name, .file = FileUse::written});
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);

@@ -116,8 +116,7 @@ Verdict verdict_of(const Comparison& result, int axis) {
     if (row.axis == axis) rows.push_back(&row);
   const VerdictFigure& figure =
       *std::find_if(kVerdictFigures.begin(), kVerdictFigures.end() - 1, [&](const VerdictFigure& each) {
-        return std::all_of(rows.begin(), rows.end(),
-                           [&](const ComparisonRow* row) { return each.of(*row).has_value(); });
+        return std::ranges::all_of(rows, [&](const ComparisonRow* row) { return each.of(*row).has_value(); });
       });
   Verdict out{figure.key, 0, *figure.of(*rows.at(1)), *figure.of(*rows[0]), {}, {}};
   for (std::size_t r = 1; r < rows.size(); ++r)

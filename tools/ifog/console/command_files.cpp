@@ -30,7 +30,7 @@ std::vector<CommandFile> files;
 void add(const std::string& option, const std::string& path, bool written) {
   std::optional<FileIdentity> identity = file_identity(path == "-" && !written ? "/dev/stdin" : path);
   if (!identity) return;
-  const auto same = std::find_if(files.begin(), files.end(), [&](const CommandFile& other) {
+  const auto same = std::ranges::find_if(files, [&](const CommandFile& other) {
     return (other.written || written) && other.identity == *identity;
   });
   if (same != files.end())
@@ -51,15 +51,11 @@ void will_read(const std::string& option, const std::string& path) {
 
 void will_write(const std::string& option, const std::string& path,
                 std::span<const std::string_view> endings) {
-  will_write(option, path);
-  expect_no_other_kind(option, path, endings);
-}
-
-void will_write(const std::string& option, const std::string& path) {
   if (path.empty()) return;
   if (is_standard_output(path)) data_to_standard_output(option);
   add(option, path, true);
   expect_writable(path);
+  if (!endings.empty()) expect_no_other_kind(option, path, endings);
 }
 
 std::string written_in_words() {
@@ -83,9 +79,7 @@ void expect_no_other_kind(const std::string& option, const std::string& path,
   const auto says = [name = unpacked_name(path)](std::string_view ending) {
     return has_ending(name, ending);
   };
-  if (std::any_of(endings.begin(), endings.end(), says) ||
-      std::none_of(std::begin(kKnown), std::end(kKnown), says))
-    return;
+  if (std::ranges::any_of(endings, says) || std::none_of(std::begin(kKnown), std::end(kKnown), says)) return;
   throw WrongUsage(option,
                    "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
 }

@@ -3,36 +3,27 @@
 // output destroys an input or another output.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace ifog::tools {
 
-// Call one of these for each option or argument that names a file, before writing; "" is no file. They throw
-// WrongUsage with both options if two files are the same regular file, by device and inode, and one is
-// written. Devices and pipes may repeat. A folder stands for its flight recordings.
+// Called for each option or argument that names a file, before writing (see options/command.h); "" is no
+// file. They throw WrongUsage with both options if two files are the same regular file, by device and inode,
+// and one is written. Devices and pipes may repeat. A folder stands for its flight recordings.
 void will_read(const std::string& option, const std::string& path);
 
 // "-" is standard output; text for people then goes to standard error. Throws WrongUsage if a second output
 // uses it, std::runtime_error if it is a folder or cannot be written. Call it before the first say().
-void will_write(const std::string& option, const std::string& path);
-// The same for an output of one format, with expect_no_other_kind().
+// endings: of an output of one format, see expect_no_other_kind(); empty: any.
 void will_write(const std::string& option, const std::string& path,
-                std::span<const std::string_view> endings);
+                std::span<const std::string_view> endings = {});
 
 // "wrote a.json, b.svg" for the regular files above, at the end of a run; "" if there are none.
 std::string written_in_words();
 // For a run that prints nothing.
 void forget_written_files();
-
-inline constexpr auto kJsonEndings = std::to_array<std::string_view>({".json", ".jsonl", ".ndjson"});
-inline constexpr auto kModelEndings = std::to_array<std::string_view>({".toml"});
-inline constexpr auto kPageEndings = std::to_array<std::string_view>({".html", ".htm"});
-inline constexpr auto kFrameEndings = std::to_array<std::string_view>({".log", ".candump", ".txt"});
-inline constexpr auto kByteEndings =
-    std::to_array<std::string_view>({".bin", ".kvh", ".raw", ".dat", ".txt"});
 
 // Throws WrongUsage if the name's ending belongs to another format, e.g. a page in report.pdf, and names the
 // first correct ending.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 

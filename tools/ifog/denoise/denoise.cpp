@@ -34,11 +34,10 @@
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise.h"
@@ -57,10 +56,9 @@ struct ConfiguredSensor {
 };
 
 const SensorConfig& chosen(const Config& config, const DenoiseOptions& options) {
-  const auto found =
-      std::find_if(config.sensors.begin(), config.sensors.end(), [&](const SensorConfig& sensor) {
-        return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
-      });
+  const auto found = std::ranges::find_if(config.sensors, [&](const SensorConfig& sensor) {
+    return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
+  });
   if (found != config.sensors.end()) return *found;
   throw refusal("{}: {}", options.config,
                 options.sensor.empty() ? "has several sensors; expected --sensor NAME"
@@ -137,27 +135,13 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
 }
 
 // With a wrong --rate, steps of the time column are counted as gaps or jitter.
-void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
+void tell_other_rate(const DenoiseOptions& options, double rate_hz, std::span<const double> time_s) {
   constexpr double kAlike = 0.2;
-  if (!(rate_hz > 0.0) || table.size() < 2) return;
-  const double own_hz = 1.0 / sample_clock(table.time_s).period_s;
+  if (!(rate_hz > 0.0) || time_s.size() < 2) return;
+  const double own_hz = 1.0 / sample_clock(time_s).period_s;
   if (std::abs(rate_hz / own_hz - 1.0) > kAlike)
     warn("{}: {} is {:g} Hz, the capture's own times say {:.6g} Hz\n", options.capture,
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
-}
-
-// Registers inputs and outputs before any of them is used.
-void name_files(DenoiseOptions& options) {
-  if (!options.sensor.empty() && options.config.empty())
-    throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
-                                     ", expected --config with it, whose sensors have names");
-  options.input.will_read("CAPTURE", options.capture);
-  will_read("--model", options.model);
-  will_read("--noise", options.noise);
-  will_read("--config", options.config);
-  will_write("--output", options.output);
-  will_write("--json", options.json, kJsonEndings);
-  will_write("--plot", options.picture);
 }
 
 template <class Settings>
@@ -166,21 +150,24 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
   LongTable table = options.input.read_long(capture);
   table.clean_and_tell(leave_out_full_scale, options.capture);
   leave_out_dead_axes(table, options.capture);
-  rows.count_from(table.origin);
+  const CaptureView view = view_of(table, options.capture);
+  rows.count_from(view.origin);
   OfflineSettings of = settings();
-  tell_other_rate(options, of.sensor.nominal_rate_hz, table);
+  tell_other_rate(options, of.sensor.nominal_rate_hz, view.time_s);
   const std::string model = of.model ? of.model->identity() : "";
-  if (of.model && !table.dead_axes.empty())
-    of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
-  rows.follow(table);
-  OfflineResult result = denoise_capture(table, options.capture, of, rows);
+  if (of.model && !view.dead_axes.empty())
+    of.model = std::make_shared<const Model>(without_axes(*of.model, view.dead_axes));
+  if (of.model) rows.follow(view);
+  OfflineResult result = denoise_capture(view, options.capture, of, rows);
   rows.reference_trial().tell(options.capture);
   result.model = model;  // of the whole file, including effects of axes that are missing here
   return result;
 }
 
 void run_denoise(DenoiseOptions options) {
-  name_files(options);
+  if (!options.sensor.empty() && options.config.empty())
+    throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
+                                     ", expected --config with it, whose sensors have names");
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
   std::optional<FlightInput> flight;
@@ -220,7 +207,7 @@ void run_denoise(DenoiseOptions options) {
   rows.finish(options.capture);
   if (result.exchanges == 0) rows.model_trial().weigh();  // otherwise there were several models
   tell_denoised(options, rows, result);
-  if (!options.json.empty()) write_json(options.json, denoise_json(options, rows, result));
+  write_json(options.json, denoise_json(options, rows, result));
   if (!options.picture.empty()) draw_denoised(options.picture, rows, result);
 }
 
@@ -234,21 +221,23 @@ void add_denoise(const Command& program) {
       "CAPTURE", options->capture,
       "Capture (.csv, .csv.gz, .h5), flight recording (a file or its folder), raw bytes, candump or LCM "
       "log",
-      {.required = true});
+      {.required = true, .file = FileUse::read});
   command.add_option("-o,--output", options->output,
                      "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis",
-                     {.required = true});
+                     {.required = true, .file = FileUse::written});
   options->input.add_to(command);
   add_filter_options(command, options->filter);
   command.add_flag("--smooth", options->smooth,
                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
-  command.add_option("--model", options->model, "Model file of the sensor");
+  command.add_option("--model", options->model, "Model file of the sensor", kReadsFile);
   command.add_option(
       "--noise", options->noise,
-      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say");
+      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say",
+      kReadsFile);
   command.add_option("--config", options->config,
                      "Take all settings from the daemon's configuration; of a flight recording else those it "
-                     "was recorded with");
+                     "was recorded with",
+                     kReadsFile);
   command.add_option("--sensor", options->sensor, "Which sensor of the configuration");
   command.add_option("--rate", options->nominal_rate_hz,
                      "Nominal sample rate, Hz; else the driver's or the capture's", {.range = positive()});
@@ -266,9 +255,9 @@ void add_denoise(const Command& program) {
       {.type = "S", .range = not_negative()});
   options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",
                        "Write nothing from this time on, s");
-  command.add_option("--json", options->json, "Summary as JSON");
+  command.add_option("--json", options->json, "Summary as JSON", kWritesJson);
   command.add_option("--plot", options->picture, "Picture, .svg or .png",
-                     {.check = report::wrong_picture_name});
+                     {.check = report::wrong_picture_name, .file = FileUse::written});
   command.callback([options] { run_denoise(*options); });
 }
 

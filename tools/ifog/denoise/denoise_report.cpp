@@ -16,6 +16,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/filter_options.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise.h"
 #include "tools/ifog/denoise/denoised_rows.h"
@@ -28,7 +29,7 @@ namespace {
 
 bool says_anything(const FilterChoice& choice) {
   const auto& table = filter_table();
-  return std::any_of(table.begin(), table.end(), [&](const FilterSetting& setting) {
+  return std::ranges::any_of(table, [&](const FilterSetting& setting) {
     return std::visit([&](const auto& member) { return (choice.*member.choice).has_value(); },
                       setting.member);
   });
@@ -128,7 +129,8 @@ nlohmann::json denoise_json(const DenoiseOptions& options, const DenoisedRows& r
     axes.push_back(std::move(one));
   }
   rows.model_trial().add_to(axes);
-  const FilterSettings& filter = result.filter;
+  nlohmann::json filter = filter_json(result.filter);
+  filter["from_start_up"] = result.noise_learned && !rows.none_filtered();
   return {{"schema", "ifog.denoise/1"},
           {"capture", options.capture},
           {"samples", rows.written()},
@@ -145,21 +147,7 @@ nlohmann::json denoise_json(const DenoiseOptions& options, const DenoisedRows& r
           {"out_of_range", rows.counts().out_of_range},
           {"ramp_phase_unknown", rows.counts().ramp_unknown},
           {"samples_before_noise_known", rows.counts().unknown_noise},
-          {"filter",
-           {{"rule", filter.rule},
-            {"state", filter.state},
-            {"process_noise", filter.process_noise},
-            {"measurement_noise", filter.measurement_noise},
-            {"from_start_up", result.noise_learned && !rows.none_filtered()},
-            {"window", filter.window},
-            {"weights", filter.weights},
-            {"draws", filter.draws},
-            {"floor", filter.floor},
-            {"follow_manoeuvres", filter.follow_manoeuvres},
-            {"conserve_angle", filter.conserve_angle},
-            {"guard", filter.guard},
-            {"steady_gain", filter.steady_gain},
-            {"seed", filter.seed}}},
+          {"filter", filter},
           {"axes", axes}};
 }
 

@@ -18,7 +18,6 @@ void DenoisedRows::begin(const std::vector<std::string>& axes, const OfflineSett
   if (settings.model) {
     tell_model_of_one_axis(*settings.model, settings.sensor.model, axes);
     model_trial_.begin(*settings.model, axes);
-    reference_trial_.begin(axes);
   }
   moments_.resize(axes.size());
   columns_.axes.resize(axes.size());
@@ -101,9 +100,8 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
 
 void DenoisedRows::finish(const std::string& name) {
   if (extent_.written == 0 && extent_.rows > 0) part_.refuse_empty(extent_.first_s, extent_.last_s, name);
-  if (extent_.written > 0 && std::all_of(moments_.begin(), moments_.end(), [&](const AxisMoments& axis) {
-        return axis.missing == extent_.written;
-      }))
+  if (extent_.written > 0 &&
+      std::ranges::all_of(moments_, [&](const AxisMoments& axis) { return axis.missing == extent_.written; }))
     refuse_without_rates(name, extent_.written);
   if (smooth_)
     for (Samples* const column : written_columns())

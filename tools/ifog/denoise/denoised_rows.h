@@ -45,7 +45,7 @@ class DenoisedRows {
   DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
 
   // Compares with the reference rate of this capture too; it must outlive this.
-  void follow(const LongTable& table) { reference_trial_.follow(table); }
+  void follow(const CaptureView& capture) { reference_trial_.follow(capture); }
   // Call it once, before the first sample.
   void begin(const std::vector<std::string>& axes, const OfflineSettings& settings);
   // Sets the origin of all times; before the first sample.

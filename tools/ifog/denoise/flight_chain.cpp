@@ -114,7 +114,7 @@ class FlightChain {
     recorded_at_.clear();
     for (const ChannelConfig& channel : outside_channels(settings.sensor))
       recorded_at_.push_back(
-          static_cast<std::size_t>(std::find(names.begin(), names.end(), channel.name) - names.begin()));
+          static_cast<std::size_t>(std::ranges::find(names, channel.name) - names.begin()));
     return out;
   }
 

@@ -61,22 +61,14 @@ void ModelTrial::add_to(nlohmann::json& axes) const {
   }
 }
 
-void ReferenceTrial::begin(const std::vector<std::string>& axes) {
-  if (table_ == nullptr) return;
-  for (const std::string& axis : axes) {
-    const std::string name = "reference_rate_" + (axis.empty() ? "" : axis + "_") + "radps";
-    const auto found = std::ranges::find(table_->columns, name, &LongColumn::name);
-    axes_.emplace_back().reference = found == table_->columns.end() ? nullptr : &*found;
-  }
-}
-
 void ReferenceTrial::add(double time_s, const Axes& raw_radps, const Axes& compensated_radps) {
-  if (axes_.empty()) return;
-  while (row_ < table_->size() && table_->time_s[row_] < time_s) ++row_;
+  if (capture_ == nullptr) return;
+  while (row_ < capture_->size() && capture_->time_s[row_] < time_s) ++row_;
   const bool over = std::exchange(second_, std::floor(time_s)) != second_;
-  for (std::size_t i = 0; i < axes_.size() && row_ < table_->size(); ++i) {
+  for (std::size_t i = 0; i < axes_.size() && row_ < capture_->size(); ++i) {
+    const std::span<const double> references = capture_->reference_rate_radps[i];
+    if (references.empty()) continue;
     OfAxis& axis = axes_[i];
-    if (axis.reference == nullptr) continue;
     if (over && axis.raw.count() > 0.0) {
       const double raw = std::pow(axis.raw.mean(), 2), compensated = std::pow(axis.compensated.mean(), 2);
       axis.raw_square.add(raw);
@@ -84,7 +76,7 @@ void ReferenceTrial::add(double time_s, const Axes& raw_radps, const Axes& compe
       axis.growth.add(compensated - raw);
       axis.raw = axis.compensated = {};
     }
-    const double reference = axis.reference->values[row_], raw = raw_radps[i] - reference,
+    const double reference = references[row_], raw = raw_radps[i] - reference,
                  compensated = compensated_radps[i] - reference;
     if (!std::isfinite(raw + compensated)) continue;
     axis.raw.add(raw);
@@ -96,14 +88,16 @@ void ReferenceTrial::tell(const std::string& capture) const {
   constexpr double kFewest = 8.0;   // means of 1 s
   constexpr double kMuch = 0.05;    // of the mean square; else the bias changed as it does from day to day
   constexpr double kCertain = 3.0;  // standard errors
-  for (const OfAxis& axis : axes_) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const OfAxis& axis = axes_[i];
     const double n = axis.growth.count(), least = kCertain * axis.growth.deviation() / std::sqrt(n);
     if (n < kFewest || !(axis.growth.mean() > std::fmax(least, kMuch * axis.raw_square.mean()))) continue;
     warn(
-        "{}: 1 s means of the corrected rate are {:.4g} deg/h (RMS) from {}, those of the raw rate {:.4g}: "
+        "{}: 1 s means of the corrected rate are {:.4g} deg/h (RMS) from reference_rate_{}radps, those of "
         "the "
-        "model does not hold here; run ifog diagnose on both captures together\n",
-        capture, std::sqrt(axis.compensated_square.mean()) / kDegreePerHour, axis.reference->name,
+        "raw rate {:.4g}: the model does not hold here; run ifog diagnose on both captures together\n",
+        capture, std::sqrt(axis.compensated_square.mean()) / kDegreePerHour,
+        capture_->axes[i].empty() ? "" : capture_->axes[i] + "_",
         std::sqrt(axis.raw_square.mean()) / kDegreePerHour);
   }
 }

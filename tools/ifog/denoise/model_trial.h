@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
 #include "filters/promise/running_trial.h"
 #include "filters/settings/axes.h"
-#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/denoise/moments.h"
 
 namespace ifog::tools {
@@ -39,22 +39,22 @@ class ModelTrial {
 // Compares the raw and the compensated rate with the reference rate of the capture, where it has one.
 class ReferenceTrial {
  public:
-  // The capture, which must outlive this; without it nothing is compared.
-  void follow(const LongTable& table) { table_ = &table; }
-  // Call it once, before the first sample.
-  void begin(const std::vector<std::string>& axes);
+  // The capture must outlive this; without it nothing is compared.
+  void follow(const CaptureView& capture) {
+    capture_ = &capture;
+    axes_.resize(capture.axes.size());
+  }
   void add(double time_s, const Axes& raw_radps, const Axes& compensated_radps);
   // Warns about each axis whose compensated rate is significantly farther from the reference than its raw one.
   void tell(const std::string& capture) const;
 
  private:
   struct OfAxis {
-    const LongColumn* reference = nullptr;           // null: there is none
     Moments raw, compensated;                        // of the present second: minus the reference
     Moments raw_square, compensated_square, growth;  // of the means over 1 s; growth: of their square
   };
 
-  const LongTable* table_ = nullptr;
+  const CaptureView* capture_ = nullptr;
   std::size_t row_ = 0;
   double second_ = 0.0;
   std::vector<OfAxis> axes_;

@@ -29,44 +29,37 @@ bool used(const Model* model, const std::string& channel) {
     const ChannelNames names = names_in(of_effect);
     return names.of == channel || names.less == channel;
   };
-  return model != nullptr &&
-         std::any_of(model->effects.begin(), model->effects.end(), [&](const Effect& effect) {
+  return model != nullptr && std::ranges::any_of(model->effects, [&](const Effect& effect) {
            return names_it(effect.channel) || names_it(effect.with_channel);
          });
 }
 
-// Columns of channels that the chain uses: all, or if they are too many, those of the model.
-std::vector<std::size_t> chosen_channels(const LongTable& capture, const CaptureShape& shape,
-                                         const Model* model) {
-  std::vector<std::size_t> out;
-  const bool all = shape.channels <= static_cast<std::size_t>(kMaxChannels);
-  for (std::size_t c = 0; c < capture.columns.size(); ++c)
-    if (shape.places[c].kind == CaptureShape::Place::Kind::channel &&
-        (all || used(model, capture.columns[c].name)))
-      out.push_back(c);
-  if (out.size() > static_cast<std::size_t>(kMaxChannels))
+// Channels that the chain uses: all, or if they are too many, those of the model.
+std::vector<CaptureView::Channel> chosen_channels(const CaptureView& capture, const Model* model) {
+  const auto most = static_cast<std::size_t>(kMaxChannels);
+  std::vector<CaptureView::Channel> out = capture.channels;
+  if (out.size() > most) std::erase_if(out, [&](const auto& channel) { return !used(model, channel.name); });
+  if (out.size() > most)
     throw refusal("the model uses {} channels, expected at most {}", out.size(), kMaxChannels);
   return out;
 }
 
-ChainSettings chain_settings_of(const LongTable& capture, const std::string& path, const CaptureShape& shape,
-                                const std::vector<std::size_t>& channels, const OfflineSettings& settings,
-                                const SampleClock& clock) {
+ChainSettings chain_settings_of(const CaptureView& capture, const std::string& path,
+                                const std::vector<CaptureView::Channel>& channels,
+                                const OfflineSettings& settings, const SampleClock& clock) {
   ChainSettings out;
-  out.facts.axes = static_cast<int>(shape.axes.size());
+  out.facts.axes = static_cast<int>(capture.axes.size());
   if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
     throw refusal("{}: has fewer than 2 samples, expected more or --rate HZ", path);
   out.facts.nominal_rate_hz =
       settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz : rounded_rate(clock.period_s);
   out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
-  out.axes = shape.axes;
-  for (const std::size_t c : channels) {
-    const std::string& name = capture.columns[c].name;
-    out.channels.push_back(name);
-    double max_age_s = kChannelMaxAge_s;
-    for (const ChannelConfig& channel : settings.sensor.channels)
-      if (channel.name == name) max_age_s = channel.max_age_s;
-    out.channel_max_age_s.push_back(max_age_s);
+  out.axes = capture.axes;
+  for (const CaptureView::Channel& channel : channels) {
+    out.channels.push_back(channel.name);
+    const auto configured = std::ranges::find(settings.sensor.channels, channel.name, &ChannelConfig::name);
+    out.channel_max_age_s.push_back(configured == settings.sensor.channels.end() ? kChannelMaxAge_s
+                                                                                 : configured->max_age_s);
   }
   out.filter = settings.sensor.filter;
   out.start_up_s = settings.sensor.start_up_s;
@@ -93,13 +86,12 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
   }
 }
 
+// Adds what the results show.
 void add(const IncrementerCounts& from, const IncrementerCounts& less, IncrementerCounts& to) {
   for (std::uint64_t IncrementerCounts::*count :
        {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
-        &IncrementerCounts::ambiguous, &IncrementerCounts::repeated, &IncrementerCounts::mixed,
-        &IncrementerCounts::restarts, &IncrementerCounts::invalid, &IncrementerCounts::saturated,
-        &IncrementerCounts::implausible, &IncrementerCounts::channel_implausible,
-        &IncrementerCounts::clock_steps, &IncrementerCounts::sensor_clock_sets, &IncrementerCounts::pauses})
+        &IncrementerCounts::ambiguous, &IncrementerCounts::mixed, &IncrementerCounts::invalid,
+        &IncrementerCounts::saturated, &IncrementerCounts::implausible})
     to.*count += from.*count - less.*count;
 }
 
@@ -115,38 +107,30 @@ void OfflineTimes::advance(const ifog_sample& sample) {
   if (!std::exchange(begun_, true)) rows_.count_from(times_.origin());
 }
 
-OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
+OfflineResult denoise_capture(const CaptureView& capture, const std::string& name,
                               const OfflineSettings& settings, DenoisedRows& rows) {
-  const CaptureShape shape = capture_shape(capture.names(), name, capture);
-  const std::vector<std::size_t> channels = chosen_channels(capture, shape, settings.model.get());
+  const std::vector<CaptureView::Channel> channels = chosen_channels(capture, settings.model.get());
   const SampleClock clock = capture.size() < 2 ? SampleClock{} : sample_clock(capture.time_s);
-  ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings, rows);
-  // The time, the axes, the channels.
-  std::vector<std::span<const double>> views{capture.time_s};
-  views.resize(1 + shape.axes.size());
-  for (std::size_t c = 0; c < capture.columns.size(); ++c)
-    if (shape.places[c].kind == CaptureShape::Place::Kind::rate)
-      views[1 + shape.places[c].at] = capture.columns[c].values;
-  for (const std::size_t c : channels) views.emplace_back(capture.columns[c].values);
+  ChainRun chain(chain_settings_of(capture, name, channels, settings, clock), settings, rows);
   Reading reading;
   std::optional<RowTimes> times;
-  if (capture.size() > 0) times.emplace(views[0], clock);
+  if (capture.size() > 0) times.emplace(capture.time_s, clock);
   Progress progress("denoising", capture.size());
   for (std::size_t i = 0; i < capture.size(); ++i) {
     if (i % RowBatch::kRows == 0) progress.at(i);
     // The file's times serve as the device's clock.
-    reading.device_time_ns = std::llround(times->next(views[0][i]) * 1e9);
+    reading.device_time_ns = std::llround(times->next(capture.time_s[i]) * 1e9);
     reading.valid_axes = 0;
-    for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
-      reading.value[axis] = views[1 + axis][i];
+    for (std::size_t axis = 0; axis < capture.axes.size(); ++axis) {
+      reading.value[axis] = capture.rate_radps[axis][i];
       if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
     }
     reading.fresh_channels = 0;
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      reading.channel[c] = views[1 + shape.axes.size() + c][i];
+      reading.channel[c] = channels[c].values[i];
       if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
     }
-    chain.run(reading, views[0][i]);
+    chain.run(reading, capture.time_s[i]);
   }
   OfflineResult result = chain.finish();
   // Row times are as logged; no clock was set.
@@ -239,7 +223,7 @@ void ChainRun::count(bool counts) {
 
 void ChainRun::describe() {
   for (const std::string& effect : chain_->parts().left_out())
-    if (std::find(result_.left_out.begin(), result_.left_out.end(), effect) == result_.left_out.end())
+    if (std::ranges::find(result_.left_out, effect) == result_.left_out.end())
       result_.left_out.push_back(effect);
   result_.model = chain_->parts().model_identity();
   result_.noise_learned = !chain_->parts().noise_known();

@@ -17,7 +17,6 @@
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 
@@ -74,7 +73,7 @@ struct OfflineResult {
 };
 
 // All pass each output to `rows`, and throw std::runtime_error or std::invalid_argument with one line. name: of the capture, for messages.
-OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
+OfflineResult denoise_capture(const CaptureView& capture, const std::string& name,
                               const OfflineSettings& settings, DenoisedRows& rows);
 // Uses the samples, times and channels that the daemon had. Calls `settings` at the first file, at each file
 // with other settings and at each restart of the daemon. `fixed`: the settings do not change, and only

@@ -9,13 +9,10 @@
 
 #include "drivers/capture/files/output_file.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -33,54 +30,28 @@ struct DiagnoseArguments {
   bool quiet = false;
 };
 
-std::size_t longest_of(const std::vector<CaptureView>& captures) {
-  const auto longest =
-      std::max_element(captures.begin(), captures.end(),
-                       [](const CaptureView& a, const CaptureView& b) { return a.size() < b.size(); });
-  return static_cast<std::size_t>(longest - captures.begin());
-}
-
 void run_diagnose(const DiagnoseArguments& arguments) {
-  for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
-  will_read("--model", arguments.model);
-  will_write("--json", arguments.json, kJsonEndings);
-  will_write("--write-model", arguments.write_model, kModelEndings);
-  will_write("--report", arguments.report, kPageEndings);
-  std::vector<LongCapture> read;
-  std::vector<std::string> hashes;  // for the model file, which lists its captures
-  for (const std::string& path : arguments.captures) {
-    hashes.emplace_back();
-    const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();
-    read.push_back(arguments.input.read_long_capture(path, wanted ? &hashes.back() : nullptr));
-    if (arguments.since_power_up_s) read.back().set_since_power_up(*arguments.since_power_up_s);
-  }
-  std::vector<CaptureView> as_sent;
-  for (std::size_t c = 0; c < read.size(); ++c)
-    as_sent.push_back(read[c].part(arguments.part, arguments.captures[c]));
-  const std::vector<std::string> not_usable = unusable_axes(as_sent, arguments.captures);
   Model model;
-  if (!arguments.model.empty()) {
-    model = read_model(arguments.model);
-    tell_model_of_one_axis(model, arguments.model, read.front().view().axes);
-    naming(arguments.model, [&] {
-      for (LongCapture& capture : read) capture.correct(model);
-    });
-  }
-  std::vector<CaptureView> captures;
-  for (std::size_t c = 0; c < read.size(); ++c) {
-    read[c].cut(arguments.part, arguments.captures[c]);
-    captures.push_back(read[c].view());
-    leave_out(not_usable, captures.back());
-  }
+  if (!arguments.model.empty()) model = read_model(arguments.model);
+  const PreparedCaptures prepared = arguments.input.prepared(
+      arguments.captures, {.part = arguments.part,
+                           .model = &model,
+                           .model_path = arguments.model,
+                           .since_power_up_s = arguments.since_power_up_s,
+                           // For the model file and the page, which list their captures.
+                           .hashed = !arguments.write_model.empty() || !arguments.report.empty()});
+  const std::vector<CaptureView>& captures = prepared.views;
+  const std::vector<std::string>& hashes = prepared.hashes;
   const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, arguments.wanted);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
       say("{}{}", &each == &found.front() ? "" : "\n", diagnosis_text(each));
   }
-  if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
+  write_json(arguments.json, diagnosis_json(found));
   if (!arguments.write_model.empty()) {
     model = model_with(std::move(model), found, arguments.captures, hashes);
-    const std::size_t longest = longest_of(captures);
+    const std::size_t longest = static_cast<std::size_t>(
+        std::ranges::max_element(captures, {}, &CaptureView::size) - captures.begin());
     const std::string fitted = fit_noise_left(model, model_with({}, found, arguments.captures, hashes),
                                               captures[longest], arguments.captures[longest]);
     if (!arguments.quiet && !fitted.empty()) say("\n{}\n", fitted);
@@ -99,19 +70,22 @@ void add_diagnose(const Command& program) {
   const Command command =
       program.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
   command.add_option("capture", arguments->captures, "captures of one sensor, fitted together",
-                     {.required = true});
+                     {.required = true, .file = FileUse::read});
   arguments->input.add_to(command);
   arguments->part.add_to(command);
   command.add_option("--axis", arguments->wanted.axes, "only these axes");
-  command.add_option("--model", arguments->model, "correct with this model first; find what it leaves");
+  command.add_option("--model", arguments->model, "correct with this model first; find what it leaves",
+                     kReadsFile);
   command.add_option(
       "--since-power-up", arguments->since_power_up_s,
       "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
       "and one that is found counts from power-up; default: as a recording says it",
       {.range = not_negative()});
-  command.add_option("--write-model", arguments->write_model, "write the model with what was found");
-  command.add_option("--json", arguments->json, "write the diagnosis as JSON");
-  command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
+  command.add_option("--write-model", arguments->write_model, "write the model with what was found",
+                     {.file = FileUse::written, .endings = kModelEndings});
+  command.add_option("--json", arguments->json, "write the diagnosis as JSON", kWritesJson);
+  command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page",
+                     {.file = FileUse::written, .endings = kPageEndings});
   command.add_option("--significance", arguments->wanted.options.significance,
                      "chance of a false effect, after correction for all tried",
                      {.shows_default = true, .range = within(1e-9, 0.5)});

@@ -125,11 +125,7 @@ std::string effect_lines(const FoundEffect& found, std::size_t number, bool over
   std::string lines = fmt::format("  {}. {}{}\n     {}\n", number, name_of(effect),
                                   effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning);
   for (const ModelParameter& parameter : report::shown_parameters(found)) {
-    std::string name = parameter.name;
-    for (char& c : name) c = c == '_' ? ' ' : c;
-    if (name.ends_with(" s")) name.resize(name.size() - 2);
-    if (name.ends_with(" hz")) name.resize(name.size() - 3);
-    lines += fmt::format("     {:<18} {}\n", name, value_of(parameter));
+    lines += fmt::format("     {:<18} {}\n", report::parameter_words(parameter.name), value_of(parameter));
   }
   if (!effect.table_x.empty()) lines += fmt::format("     a table of {} knots\n", effect.table_x.size());
   lines += fmt::format("     {} {} of the {} variance; by chance: {}\n",

@@ -79,8 +79,7 @@ Common common_rows(const CaptureView& a, const CaptureView& b) {
   if (a.size() == 0 || b.size() == 0 || a.rate_radps.size() != b.rate_radps.size()) return {};
   const double later_s = b.origin.later_than(a.origin);  // origin of b's times
   const auto first = [](const CaptureView& of, double from_s) {
-    return static_cast<std::size_t>(std::lower_bound(of.time_s.begin(), of.time_s.end(), from_s) -
-                                    of.time_s.begin());
+    return static_cast<std::size_t>(std::ranges::lower_bound(of.time_s, from_s) - of.time_s.begin());
   };
   // With different origins, equal times differ by rounding.
   const double room_s = later_s == 0.0 ? 0.0 : 0.5e-9;
@@ -187,8 +186,8 @@ auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   } catch (const std::invalid_argument& error) {
     // The diagnosis names one of several captures itself.
     const std::string what = error.what();
-    const bool named = std::any_of(names.begin(), names.end(),
-                                   [&](const std::string& name) { return what.starts_with(name + ": "); });
+    const bool named =
+        std::ranges::any_of(names, [&](const std::string& name) { return what.starts_with(name + ": "); });
     throw std::runtime_error(named ? what : names.front() + ": " + what);
   }
 }
@@ -230,13 +229,12 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
                                          const AxesToDiagnose& wanted) {
   const std::vector<std::string>& axes = captures.front().axes;
   for (const std::string& axis : wanted.axes)
-    if (std::find(axes.begin(), axes.end(), axis) == axes.end())
+    if (std::ranges::find(axes, axis) == axes.end())
       throw refusal("{}: --axis is {}, expected {}", names[0], in_quotes(axis), expected_axes(axes));
   require_each_once(captures, names);
   std::vector<std::size_t> chosen;
   for (std::size_t axis = 0; axis < axes.size(); ++axis)
-    if (wanted.axes.empty() ||
-        std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) != wanted.axes.end())
+    if (wanted.axes.empty() || std::ranges::find(wanted.axes, axes[axis]) != wanted.axes.end())
       chosen.push_back(axis);
   std::vector<AxisDiagnosis> found = diagnose_each(captures, names, chosen, wanted);
   if (!found.empty())
@@ -290,8 +288,7 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
   std::list<OwnedRecords> drawn;
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
-    const auto index =
-        static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
+    const auto index = static_cast<std::size_t>(std::ranges::find(axes, each.axis) - axes.begin());
     const std::vector<Record> records = records_of(captures, names, index);
     OwnedRecords derived = with_differences(records);
     // Drawn without the correction of the other references.

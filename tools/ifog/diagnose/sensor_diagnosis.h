@@ -10,7 +10,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog adopt and ifog revert: use a proposed model and watch it; restore the one before.
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -12,16 +14,16 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
-#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/models.h"
+#include "tools/ifog/field/recorded.h"
 #include "tools/ifog/field/status_text.h"
-#include "tools/ifog/field/watch.h"
 
 namespace ifog::tools {
 namespace {
@@ -31,6 +33,111 @@ struct AdoptArguments {
   std::string sensor, json;
   double watch_s = 600.0;
 };
+
+// Observation of a sensor after the exchange of its model: notices of the daemon, and the gain compared with
+// the predicted one.
+struct Watched {
+  double seconds = 0.0;
+  bool whole = true;  // not interrupted
+  std::uint64_t statuses = 0;
+  std::int64_t divergences = 0, gated = 0;  // increase during the watch
+  std::string noticed;                      // the daemon's last notice, "" if none
+  std::vector<double> nis, whiteness;       // by axis, means over the watch
+  std::vector<AxisGain> gain;               // from the recording
+  std::string not_weighed;                  // why gain is empty
+};
+
+// Recordings before the exchange, in which effects with memory settle.
+constexpr std::size_t kFilesBefore = 3;
+constexpr std::uint64_t kMostBytesBefore = 64'000'000;
+
+// Number of rows in those recordings; unreadable recordings are skipped.
+std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
+  if (files.empty()) return 0;
+  try {
+    return read_recorded(sensor, files, field.required_config().plugin_folders).capture.view().size();
+  } catch (const std::exception&) {
+    files.clear();
+    return 0;
+  }
+}
+
+void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const Model& before,
+           const Model& after, std::uint64_t recorded_before) {
+  if (sensor.record.folder.empty()) {
+    out.not_weighed = "nothing is recorded of the sensor ([sensor.record])";
+    return;
+  }
+  try {
+    std::vector<RecordedFile> all = recorded_files(sensor), settling;
+    std::uint64_t bytes = 0;
+    while (!all.empty() && all.front().number <= recorded_before) {
+      settling.push_back(all.front());
+      bytes += all.front().bytes;
+      all.erase(all.begin());
+    }
+    while (settling.size() > kFilesBefore || bytes > kMostBytesBefore) {
+      bytes -= settling.front().bytes;
+      settling.erase(settling.begin());
+    }
+    if (all.empty()) {
+      out.not_weighed = "nothing was recorded meanwhile";
+      return;
+    }
+    const std::size_t begin = rows_to_settle(sensor, settling, field);
+    all.insert(all.begin(), settling.begin(), settling.end());
+    const Recorded recorded = read_recorded(sensor, all, field.required_config().plugin_folders);
+    out.gain = weigh_models(recorded, before, after, begin);
+    if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
+  } catch (const std::exception& error) {
+    // The history must not quote content of a recording.
+    warn("{}\n", error.what());
+    out.not_weighed = "the recordings could not be used";
+  }
+}
+
+// Observes for `seconds`, then evaluates the recording. recorded_before: number of the last recording that
+// was started before the exchange; a reload starts a new one.
+Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, const Model& before,
+              const Model& after, std::uint64_t recorded_before, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  Watched out;
+  const Clock::time_point start = Clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  std::optional<status_t> first;
+  {
+    Progress progress("watching " + sensor.name, static_cast<std::size_t>(std::max(1.0, seconds)));
+    std::int64_t last = 0;
+    const auto take = [&](const status_t& status) {
+      if (std::exchange(last, status.utime) == status.utime) return;
+      if (!first) first = status;
+      ++out.statuses;
+      out.divergences = status.divergences - first->divergences;
+      out.gated = status.gated - first->gated;
+      if (!status.notice.empty()) out.noticed = status.notice;
+      out.nis.resize(status.nis_mean.size());
+      out.whiteness.resize(status.nis_mean.size());
+      const auto n = static_cast<double>(out.statuses);
+      for (std::size_t a = 0; a < out.nis.size(); ++a) {
+        out.nis[a] += (status.nis_mean[a] - out.nis[a]) / n;
+        out.whiteness[a] += (status.whiteness[a] - out.whiteness[a]) / n;
+      }
+      progress.at(static_cast<std::size_t>(passed()));
+    };
+    try {
+      live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3)), [&](const Statuses& all) {
+        if (const auto now = all.find(sensor.name); now != all.end()) take(now->second);
+        return passed() >= seconds;
+      });
+    } catch (const std::exception& error) {
+      warn("{}\n", error.what());
+    }
+  }
+  out.seconds = std::min(passed(), seconds);
+  out.whole = passed() >= seconds;
+  weigh(out, field, sensor, before, after, recorded_before);
+  return out;
+}
 
 const char* or_none(const std::string& identity) { return identity.empty() ? "none" : identity.c_str(); }
 
@@ -64,16 +171,15 @@ std::optional<std::uint64_t> last_recording(const SensorConfig& sensor) {
   }
 }
 
-nlohmann::ordered_json adoption_json(const Proposal& proposal, const Watched& watched,
-                                     const std::string& text) {
+nlohmann::json adoption_json(const Proposal& proposal, const Watched& watched, const std::string& text) {
   constexpr std::array kNames{"kept", "in_part", "broken", "open"};
   return {{"schema", "ifog.adoption/1"},
           {"sensor", proposal.sensor},
           {"model", proposal.model.identity},
           {"replaced", proposal.against.identity},
-          {"promised", as_json(proposal.gain)},
+          {"promised", proposal.gain},
           {"watched_s", watched.seconds},
-          {"found", as_json(watched.gain)},
+          {"found", watched.gain},
           {"verdict", kNames[static_cast<std::size_t>(verdict_of(watched.gain))]},
           {"nis_mean", watched.nis},
           {"whiteness", watched.whiteness},
@@ -132,7 +238,6 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
 }
 
 void adopt(const AdoptArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -142,7 +247,7 @@ void adopt(const AdoptArguments& arguments) {
   say("{}: model {} in place of {}: {}\n", sensor.name, proposal.model.identity,
       or_none(now.before.name.identity), printable(proposal.why, kLongestMessage));
   const auto unwatched = [&](const std::string& why) {
-    if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, {}, why));
+    write_json(arguments.json, adoption_json(proposal, {}, why));
   };
   if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
@@ -155,11 +260,11 @@ void adopt(const AdoptArguments& arguments) {
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
                                 now.model, recorded_before.value_or(0), arguments.watch_s);
   tell_innovations(watched);
-  std::string text = outcome(watched);
+  std::string text = outcome(watched.gain, watched.not_weighed);
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
   say("  {}\n", text);
-  if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, watched, text));
+  write_json(arguments.json, adoption_json(proposal, watched, text));
   try {
     keep_outcome(field, sensor.name, proposal.model, text);
   } catch (const std::exception& error) {
@@ -172,7 +277,6 @@ void adopt(const AdoptArguments& arguments) {
 }
 
 void revert(const AdoptArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
@@ -195,13 +299,12 @@ void revert(const AdoptArguments& arguments) {
   exchange(place, back, now, history, {"revert", when, name, now.name, "", {}, "", last_recording(sensor)});
   say("{}: model {} is in place again, {} is kept\n", sensor.name, or_none(name.identity), now.name.identity);
   if (!place.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
-                                                      {"sensor", sensor.name},
-                                                      {"when", when},
-                                                      {"model", name.identity},
-                                                      {"replaced", now.name.identity},
-                                                      {"running", place.daemon_runs()}});
+  write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
+                                                    {"sensor", sensor.name},
+                                                    {"when", when},
+                                                    {"model", name.identity},
+                                                    {"replaced", now.name.identity},
+                                                    {"running", place.daemon_runs()}});
 }
 
 }  // namespace
@@ -214,7 +317,7 @@ void add_adopt(const Command& program) {
   arguments->field.add_to(command);
   command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not",
                      {.shows_default = true, .type = "SECONDS", .range = within(0.0, 86400.0)});
-  command.add_option("--json", arguments->json, "write what was promised and found as JSON");
+  command.add_option("--json", arguments->json, "write what was promised and found as JSON", kWritesJson);
   command.callback([arguments] { adopt(*arguments); });
 }
 
@@ -223,7 +326,8 @@ void add_revert(const Command& program) {
   const Command command = program.add_subcommand("revert", "Take the last adoption back");
   command.add_option("sensor", arguments->sensor, "name in the daemon's configuration", {.required = true});
   arguments->field.add_to(command);
-  command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1");
+  command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1",
+                     kWritesJson);
   command.callback([arguments] { revert(*arguments); });
 }
 

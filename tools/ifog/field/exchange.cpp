@@ -62,15 +62,13 @@ void require_that_it_fits(const Field& field, const SensorConfig& sensor, const 
 }
 
 ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use)
-    : field_(field),
-      sensor_(sensor.name),
-      path_(field.model_path(sensor)),
-      daemon_(running_daemon(field.state())) {
-  if (!daemon_) return;
-  live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
+    : field_(field), sensor_(sensor.name), path_(field.model_path(sensor)) {
+  const std::optional<pid_t> daemon = running_daemon(field.state());
+  if (!daemon) return;
+  live_.emplace(field.state(), *daemon);
   if (!live_->ask(kStatusWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
     throw refusal("{} has no sensor {}, expected it: nobody would see whether it uses a model",
-                  process(*daemon_), in_quotes(sensor_));
+                  process(*daemon), in_quotes(sensor_));
   const status_t& status = *live_->of(sensor_);
   if (status.state != status_t::STATE_RUNNING) throw std::runtime_error(not_running(status));
   if (status.model != in_use.identity)
@@ -79,18 +77,14 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
 }
 
 void ModelExchange::put(const std::optional<Model>& model) const {
-  if (model) {
-    write_state_file(path_, model_text(*model));
-    return;
-  }
-  remove_state_file(path_);
+  model ? write_state_file(path_, model_text(*model)) : remove_state_file(path_);
 }
 
 void ModelExchange::ask_for_reload() {
   // The daemon may have been restarted.
   const std::optional<pid_t> now = running_daemon(field_.state());
-  if (!now) throw refusal("{} has ended, and none runs in its place", process(*daemon_));
-  live_ = std::make_unique<LiveStatus>(field_.state(), *now);
+  if (!now) throw refusal("{} has ended, and none runs in its place", process(live_->daemon()));
+  live_.emplace(field_.state(), *now);
   live_->reload(kEffectWithin);
 }
 
@@ -110,13 +104,14 @@ std::string ModelExchange::why_not_in_effect() const {
 
 void ModelExchange::exchange(const std::optional<Model>& model, const std::optional<Model>& before) {
   put(model);
-  if (!daemon_) return;
+  if (!live_) return;
   std::string why;
   try {
     ask_for_reload();
     if (takes_effect(model ? model->identity() : "")) return;
-    why = process(*daemon_) + " does not use model " + in_words(model ? model->identity() : "") + " within " +
-          std::to_string(std::chrono::seconds(kEffectWithin).count()) + " s, " + why_not_in_effect();
+    why = process(live_->daemon()) + " does not use model " + in_words(model ? model->identity() : "") +
+          " within " + std::to_string(std::chrono::seconds(kEffectWithin).count()) + " s, " +
+          why_not_in_effect();
   } catch (const std::exception& error) {
     why = error.what();
   }

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 
@@ -31,6 +31,7 @@ class LiveStatus {
   // Throws likewise, also with the reasons for which the daemon rejects the configuration.
   void reload(std::chrono::milliseconds most) const;
 
+  [[nodiscard]] pid_t daemon() const { return daemon_; }
   [[nodiscard]] const Statuses& all() const { return all_; }
   // Null: the daemon has no such sensor.
   [[nodiscard]] const status_t* of(const std::string& sensor) const;
@@ -53,7 +54,7 @@ class ModelExchange {
   // not be verified.
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 
-  [[nodiscard]] bool daemon_runs() const { return daemon_.has_value(); }
+  [[nodiscard]] bool daemon_runs() const { return live_.has_value(); }
   [[nodiscard]] LiveStatus& live() { return *live_; }
 
   // model: nullopt removes the file. Throws std::runtime_error with one line after restoring `before`.
@@ -67,8 +68,7 @@ class ModelExchange {
 
   const Field& field_;
   std::string sensor_, path_;
-  std::optional<pid_t> daemon_;
-  std::unique_ptr<LiveStatus> live_;
+  std::optional<LiveStatus> live_;  // of the running daemon
 };
 
 }  // namespace ifog::tools

@@ -18,15 +18,14 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
-#include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 
 void FieldOptions::add_to(const Command& command) {
   command.add_option("--config", config,
-                     std::string("the daemon's configuration; default: ") + kServiceConfig);
+                     std::string("the daemon's configuration; default: ") + kServiceConfig, kReadsFile);
   command.add_option(
       "--state", state,
       std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
@@ -46,7 +45,6 @@ std::string Field::command(const std::string& name, const std::string& sensor) c
 }
 
 Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
-  will_read("--config", options.config);
   config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))

@@ -7,7 +7,7 @@
 
 #include "daemon/config/config.h"
 #include "drivers/system/fd.h"
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
 
 namespace ifog::tools {
 
@@ -25,7 +25,7 @@ struct FieldOptions {
 
 class Field {
  public:
-  // Registers a given configuration and the files that it names as inputs of the run (command_files.h). Throws
+  // Registers the files that the configuration names as inputs of the run (command_files.h). Throws
   // ConfigError or std::runtime_error with one line if a given or existing configuration cannot be read. The
   // default one need not exist.
   explicit Field(const FieldOptions& options);

@@ -18,21 +18,20 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
+#include "filters/effects/meaning.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/history.h"
+#include "tools/ifog/field/models.h"
 #include "tools/ifog/field/recorded.h"
-#include "tools/ifog/field/watch.h"
 #include "tools/ifog/tune/noise_at_rest.h"
 
 namespace ifog::tools {
@@ -83,10 +82,7 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
   std::string out;
   for (const AxisDiagnosis& axis : found)
     for (const FoundEffect& each : axis.diagnosis.effects) {
-      out += (out.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") + each.effect.form;
-      if (!each.effect.channel.empty()) out += " in " + each.effect.channel;
-      if (!each.effect.with_channel.empty())
-        out += " by " + each.effect.with_form + " in " + each.effect.with_channel;
+      out += (out.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") + name_of(each.effect);
       if (!each.effect.meaning.empty()) out += " (" + each.effect.meaning + ")";
     }
   return out;
@@ -107,11 +103,9 @@ std::string recordings_name(const SensorConfig& sensor, const std::vector<Record
 
 // Time when the newest recording will be closed; "" if none is being written.
 std::string closing(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
-  if (files.empty() || !files.back().open) return "";
+  if (files.empty() || !files.back().open || files.back().opened == 0) return "";
   const RecordedFile& last = files.back();
-  std::tm opened{};
-  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
-  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor.record.file_s);
+  const std::time_t at = last.opened + static_cast<std::time_t>(sensor.record.file_s);
   return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}{}",
                      static_cast<double>(last.bytes) * 1e-6,
                      static_cast<double>(sensor.record.file_bytes) * 1e-6, utc_text(at),
@@ -223,16 +217,16 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   std::vector<RecordedFile> since = files;
   // By numbers, because the wall clock may have been set. If the numbering restarted, all files are newer.
   if (!last.recorded)
-    std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
+    std::erase_if(since, [&](const RecordedFile& file) { return utc_text(file.opened) < last.when; });
   else if (!since.empty() && since.back().number >= *last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.number <= *last.recorded; });
   if (since.empty()) return;
   try {
     const Recorded recorded = read_recorded(sensor_, since, field_.required_config().plugin_folders);
-    Watched watched;
-    watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
-    if (watched.gain.empty()) return;
-    result_.promise = outcome(watched);
+    const std::vector<AxisGain> gain =
+        weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
+    if (gain.empty()) return;
+    result_.promise = outcome(gain);
     const std::string text = "night of " + utc_now() + ": " + result_.promise;
     say("{}: {}\n", sensor_.name, text);
     const StateLock hand(field_.state());
@@ -266,13 +260,13 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   const std::span<const double> time_s = recorded.capture.view().time_s;
   const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());
   const auto held_out =
-      static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), fitted_to) - time_s.begin());
+      static_cast<std::size_t>(std::ranges::lower_bound(time_s, fitted_to) - time_s.begin());
   const std::string traced = effects_text(found);
   const auto with = [&] { return model_with(before, found, {name}, hashes); };
   const std::vector<AxisGain> tried = weigh_models(recorded, before, with(), held_out);
   const auto gains = [&](const AxisDiagnosis& axis) {
-    return std::any_of(tried.begin(), tried.end(),
-                       [&](const AxisGain& gain) { return gain.axis == axis.axis && pays(gain); });
+    return std::ranges::any_of(tried,
+                               [&](const AxisGain& gain) { return gain.axis == axis.axis && pays(gain); });
   };
   std::erase_if(found, [&](const AxisDiagnosis& axis) { return !gains(axis); });
   if (found.empty())
@@ -316,7 +310,6 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
 }
 
 void run_nights(const NightArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
@@ -326,7 +319,7 @@ void run_nights(const NightArguments& arguments) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SensorConfig& sensor : field.required_config().sensors) {
     if (!arguments.sensors.empty() &&
-        std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
+        std::ranges::find(arguments.sensors, sensor.name) == arguments.sensors.end())
       continue;
     const NightResult night = Night(arguments, field, sensor).run();
     const std::string line = sensor.name + ": " + printable(night.said, kLongestMessage);
@@ -338,8 +331,7 @@ void run_nights(const NightArguments& arguments) {
                    {"proposed", night.proposed},
                    {"promise", night.promise}});
   }
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
+  write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
   if (failed) throw Failed("not every sensor could be judged");
 }
 
@@ -356,7 +348,7 @@ void add_night(const Command& program) {
   command.add_option("--most-bytes", arguments->most_bytes,
                      "of recordings, the newest; a byte takes some four of memory",
                      {.shows_default = true, .range = within(1e5, 1e12)});
-  command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1");
+  command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1", kWritesJson);
   command.callback([arguments] { run_nights(*arguments); });
 }
 

@@ -2,10 +2,10 @@
 #include "tools/ifog/field/recorded.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <optional>
@@ -22,13 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 2026-01-31T13:05:09Z for NUMBER-20260131T130509Z.ifr; "" for other names.
-std::string opened_at(std::string_view name) {
-  const std::size_t dash = name.find('-');
-  if (dash == std::string_view::npos || name.size() < dash + 17) return "";
-  const std::string date(name.substr(dash + 1, 16));
-  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 5) + ":" + date.substr(11, 2) +
-         ":" + date.substr(13, 3);
+// Of the date in NUMBER-20260131T130509Z.ifr; 0 for other names.
+std::time_t opened_at(const char* date) {
+  std::tm utc{};
+  return strptime(date, "%Y%m%dT%H%M%SZ", &utc) == nullptr ? 0 : timegm(&utc);
 }
 
 struct PowerUp {
@@ -76,7 +73,7 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
     if (!file.open && !name.ends_with(".ifr")) continue;
     const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), file.number);
     if (wrong != std::errc() || *end != '-') continue;
-    file.opened = opened_at(name);
+    file.opened = opened_at(end + 1);
     // Links are ignored, because others may write here. The file may have been removed or renamed.
     std::error_code gone;
     if (entry.symlink_status(gone).type() != fs::file_type::regular) continue;
@@ -87,8 +84,7 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
   }
   if (error && error != std::errc::no_such_file_or_directory)
     throw refusal("{}: cannot read: {}", folder.string(), error.message());
-  std::sort(out.begin(), out.end(),
-            [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
+  std::ranges::sort(out, [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
   return out;
 }
 
@@ -148,16 +144,6 @@ std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before
         {capture.axes[axis], weigh_promise({capture.time_s, old_rate[axis], new_rate[axis], at_rest})});
   }
   return out;
-}
-
-PromiseVerdict verdict_of(const std::vector<AxisGain>& gain) {
-  constexpr std::array kWorstFirst{PromiseVerdict::broken, PromiseVerdict::open, PromiseVerdict::in_part};
-  for (const PromiseVerdict each : kWorstFirst)
-    if (gain.empty() ? each == PromiseVerdict::open
-                     : std::any_of(gain.begin(), gain.end(),
-                                   [&](const AxisGain& axis) { return verdict(axis.kept) == each; }))
-      return each;
-  return PromiseVerdict::kept;
 }
 
 }  // namespace ifog::tools

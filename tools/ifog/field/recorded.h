@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
 #include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 
@@ -18,8 +19,8 @@ struct RecordedFile {
   std::uint64_t number = 0;
   std::string path;
   std::uint64_t bytes = 0;
-  bool open = false;   // being written, or not closed properly
-  std::string opened;  // UTC, format of utc_now()
+  bool open = false;       // being written, or not closed properly
+  std::time_t opened = 0;  // 0: unknown
 };
 
 // The files in the sensor's folder, by number; empty if there is no folder.
@@ -44,8 +45,5 @@ struct Recorded {
 // line.
 [[nodiscard]] std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before,
                                                  const Model& after, std::size_t begin);
-
-// The worst verdict of the axes.
-[[nodiscard]] PromiseVerdict verdict_of(const std::vector<AxisGain>& gain);
 
 }  // namespace ifog::tools

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog status: the sensors of this computer's daemon. ifog proposals: models found at night, not adopted.
+#include <boost/algorithm/string/replace.hpp>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -16,15 +17,13 @@
 #include "msgs/counters.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/field/history.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 #include "tools/ifog/field/status_text.h"
 
 namespace ifog::tools {
@@ -171,14 +170,13 @@ ordered_json sensor_json(const std::string& name, const status_t* live, const Ke
     out["health"] = {{"nis_mean", live->nis_mean},         {"whiteness", live->whiteness},
                      {"manoeuvres", live->manoeuvres},     {"divergences", live->divergences},
                      {"out_of_range", live->out_of_range}, {"noticed", live->notice}};
-  }
-  if (live != nullptr)
     out["recorded"] = {{"deliveries", live->record_deliveries},
                        {"lost", live->record_lost},
                        {"lost_bytes", live->record_lost_bytes},
                        {"written_bytes", live->record_file_bytes},
                        {"files_removed", live->record_removed}};
-  out["recordings"] = kept.recordings ? ordered_json(*kept.recordings) : ordered_json(nullptr);
+  }
+  out["recordings"] = kept.recordings;
   out["model_file"] = kept.model.identity;
   out["proposal"] = nullptr;
   if (kept.proposal)
@@ -206,8 +204,7 @@ std::string csv_line(const ordered_json* sensor) {
       if (value.is_number() || value.is_boolean()) cell = value.dump();
     }
     if (cell.find_first_of(",\"") != std::string::npos) {
-      for (std::size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2)
-        cell.insert(at, 1, '"');
+      boost::replace_all(cell, "\"", "\"\"");
       cell = '"' + cell + '"';
     }
     out += (out.empty() ? "" : ",") + cell;
@@ -239,7 +236,7 @@ std::vector<std::string> names_of(const Field& field, const Statuses& statuses) 
 }
 
 struct Running {
-  pid_t process = 0;  // 0: none
+  std::optional<pid_t> process{};
   Statuses statuses{};
 };
 
@@ -247,9 +244,9 @@ struct Running {
 Running running(const Field& field, double wait_s) {
   Running out;
   try {
-    out.process = running_daemon(field.state()).value_or(0);
-    if (out.process == 0) return out;
-    LiveStatus live(field.state(), out.process);
+    out.process = running_daemon(field.state());
+    if (!out.process) return out;
+    LiveStatus live(field.state(), *out.process);
     live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3)),
              [](const auto&) { return true; });
     out.statuses = live.all();
@@ -260,14 +257,13 @@ Running running(const Field& field, double wait_s) {
 }
 
 void show_status(const StatusArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   const Running now = running(field, arguments.wait_s);
   const std::string where = "state folder " + field.state();
   if (arguments.csv)
     say("{}\n", csv_line(nullptr));
-  else if (now.process != 0)
-    say("ifogd runs, process {}, {}\n", now.process, where);
+  else if (now.process)
+    say("ifogd runs, process {}, {}\n", *now.process, where);
   else
     say("ifogd does not run with {}; this is what the folder knows\n", where);
   ordered_json sensors = ordered_json::array();
@@ -281,13 +277,11 @@ void show_status(const StatusArguments& arguments) {
     else
       say_sensor(name, live, kept, field.command("adopt", name));
   }
-  if (!arguments.json.empty())
-    write_json(arguments.json,
-               ordered_json{{"schema", "ifog.status/1"},
-                            {"running", now.process != 0},
-                            {"process", now.process != 0 ? ordered_json(now.process) : ordered_json(nullptr)},
-                            {"state_folder", field.state()},
-                            {"sensors", sensors}});
+  write_json(arguments.json, ordered_json{{"schema", "ifog.status/1"},
+                                          {"running", now.process.has_value()},
+                                          {"process", now.process},
+                                          {"state_folder", field.state()},
+                                          {"sensors", sensors}});
 }
 
 struct ProposalsArguments {
@@ -305,9 +299,8 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
 }
 
 void list_proposals(const ProposalsArguments& arguments) {
-  will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  ordered_json all = ordered_json::array();
   bool damaged = false, any = false;
   for (const std::string& name : sensors_with_proposal(field.state())) {
     try {
@@ -327,15 +320,14 @@ void list_proposals(const ProposalsArguments& arguments) {
                      {"model", found->model.identity},
                      {"stale", !why_not.empty()},
                      {"report", report},
-                     {"gain", as_json(found->gain)}});
+                     {"gain", nlohmann::json(found->gain)}});
     } catch (const std::exception& error) {
       warn("{}\n", error.what());
       damaged = true;
     }
   }
   if (!any && !damaged) say("no proposal waits in {}\n", field.state());
-  if (!arguments.json.empty())
-    write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
+  write_json(arguments.json, ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
   if (damaged) throw Failed("damaged");
 }
 
@@ -350,7 +342,7 @@ void add_status(const Command& program) {
                      {.shows_default = true, .type = "SECONDS", .range = within(0.1, 3600.0)});
   command.add_flag("-c,--csv", arguments->csv,
                    "a line a sensor as CSV, for scripts, with the names of its columns first");
-  command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
+  command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1", kWritesJson);
   command.callback([arguments] { show_status(*arguments); });
 }
 
@@ -359,7 +351,7 @@ void add_proposals(const Command& program) {
   const Command command =
       program.add_subcommand("proposals", "List the models that the nights have proposed");
   arguments->field.add_to(command);
-  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
+  command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1", kWritesJson);
   command.callback([arguments] { list_proposals(*arguments); });
 }
 

@@ -30,7 +30,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{20};
 std::vector<std::string> command_for_one(const std::string& index) {
   std::vector<std::string> words = {own_path()};
   const std::vector<std::string> typed = typed_words();
-  const auto end_of_options = std::find(typed.begin(), typed.end(), "--");
+  const auto end_of_options = std::ranges::find(typed, "--");
   std::copy_if(typed.begin(), end_of_options, std::back_inserter(words),
                [](const std::string& word) { return word != "--dry-run"; });
   words.insert(words.end(), end_of_options, typed.end());

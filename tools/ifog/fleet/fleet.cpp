@@ -15,11 +15,11 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
@@ -72,8 +72,8 @@ class FleetRun {
     for (PopulationParameter& each : population_.parameters) describe(each);
     population_.standing_out = standing_out(population_.parameters);
     for (const FoundInGyro& each : diagnosed_.found)
-      if (std::none_of(type_.effects.begin(), type_.effects.end(),
-                       [&](const TypeCandidate& of_type) { return is_of(of_type, each.effect); }))
+      if (std::ranges::none_of(type_.effects,
+                               [&](const TypeCandidate& of_type) { return is_of(of_type, each.effect); }))
         population_.own.push_back(each);
     write();
     tell();
@@ -283,9 +283,10 @@ void add_fleet(const Command& program) {
   const Command command = program.add_subcommand(
       "fleet", "Diagnose every gyro of a type, then the type: effects, spread, outliers");
   command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)",
-                     {.required = true});
+                     {.required = true, .file = FileUse::read});
   command.add_option("--results", arguments->results,
-                     "folder of results; otherwise next to the manifest, under its name with .results");
+                     "folder of results; otherwise next to the manifest, under its name with .results",
+                     {.type = "FOLDER"});
   command.add_option("--engine", arguments->engine,
                      "who runs the diagnoses: auto takes slurm where there is an sbatch",
                      {.shows_default = true, .choices = {"auto", "local", "slurm"}});

@@ -7,9 +7,14 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/field/state_json.h"
 #include "tools/ifog/fleet/gyro_work.h"
 #include "tools/ifog/fleet/results.h"
+
+namespace ifog {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Estimate, value, std_error)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TypePrior, share, mean, mean_std_error, spread, likeliest_spread,
+                                   likelihood_ratio)
+}  // namespace ifog
 
 namespace ifog::tools {
 namespace {
@@ -79,47 +84,48 @@ std::vector<double> explained_by_form(const TypeCandidate& candidate, std::size_
   return sums;
 }
 
-using Json = nlohmann::ordered_json;
-
-Json spread_json(const RandomEffects& spread) {
-  Json json{{"method", "DerSimonian-Laird"}};
-  json.update(as_json(spread));
-  return json;
+nlohmann::json spread_json(const RandomEffects& spread) {
+  return {{"method", "DerSimonian-Laird"}, {"gyros", spread.count},
+          {"mean", spread.mean},           {"mean_std_error", spread.mean_std_error},
+          {"spread", spread.spread},       {"q", spread.q},
+          {"i_squared", spread.i_squared}};
 }
 
-Json gyro_json(const Population& population, const EffectInGyro& each) {
+nlohmann::json gyro_json(const Population& population, const EffectInGyro& each) {
   return {{"serial", population.serials[each.gyro]},
-          {"own", as_json(each.own)},
-          {"not_measured", each.not_measured.empty() ? Json(nullptr) : Json(each.not_measured)},
+          {"own", each.own},
+          {"not_measured",
+           each.not_measured.empty() ? nlohmann::json(nullptr) : nlohmann::json(each.not_measured)},
           {"likelihood_ratio", each.likelihood_ratio},
           {"found_alone", each.found_alone},
           {"probability", each.probability},
           {"chance", each.chance},
           {"found", each.found},
-          {"with_prior", as_json(each.with_prior)}};
+          {"with_prior", each.with_prior}};
 }
 
-Json type_effect_json(const Population& population, const TypeEffect& effect) {
-  Json json = as_json(effect.effect);
+nlohmann::json type_effect_json(const Population& population, const TypeEffect& effect) {
+  nlohmann::json json = effect.effect;
   json["found_alone"] = effect.found_alone;
   json["found"] = effect.found;
-  json["prior"] = as_json(effect.prior);
+  json["prior"] = effect.prior;
   json["set_aside"] = effect.set_aside;
   json["all"] = spread_json(effect.all);
-  json["gyros"] = Json::array();
+  json["gyros"] = nlohmann::json::array();
   for (const EffectInGyro& each : effect.gyros) json["gyros"].push_back(gyro_json(population, each));
   return json;
 }
 
-Json parameter_json(const Population& population, const PopulationParameter& parameter) {
-  Json json = {{"name", parameter.name},
-               {"axis", parameter.axis},
-               {"unit", parameter.unit},
-               {"of_logarithm", parameter.logarithmic},
-               {"median", parameter.robust.median},
-               {"robust_sigma", parameter.robust.sigma},
-               {"spread", parameter.spread ? spread_json(*parameter.spread) : Json(nullptr)},
-               {"gyros", Json::array()}};
+nlohmann::json parameter_json(const Population& population, const PopulationParameter& parameter) {
+  nlohmann::json json = {
+      {"name", parameter.name},
+      {"axis", parameter.axis},
+      {"unit", parameter.unit},
+      {"of_logarithm", parameter.logarithmic},
+      {"median", parameter.robust.median},
+      {"robust_sigma", parameter.robust.sigma},
+      {"spread", parameter.spread ? spread_json(*parameter.spread) : nlohmann::json(nullptr)},
+      {"gyros", nlohmann::json::array()}};
   for (std::size_t i = 0; i < parameter.gyros.size(); ++i)
     json["gyros"].push_back({{"serial", population.serials[parameter.gyros[i]]},
                              {"value", parameter.values[i].value},
@@ -219,7 +225,7 @@ bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
   for (std::size_t i = 0; i < type.effects.size(); ++i) {
     std::vector<Effect>& forms = type.effects[i].forms;
     const std::vector<double> sums = explained_by_form(type.effects[i], i, measured);
-    const auto best = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(sums) - sums.begin());
     if (forms_too && best > 0 && sums[best] > sums.front() + kBetterForm) {
       std::rotate(forms.begin(), forms.begin() + static_cast<std::ptrdiff_t>(best),
                   forms.begin() + static_cast<std::ptrdiff_t>(best) + 1);
@@ -254,41 +260,17 @@ std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEf
   return parameters;
 }
 
-template <typename Io, Is<Estimate> T>
-void fields(Io& io, T& of) {
-  io("value", of.value);
-  io("std_error", of.std_error);
-}
-template <typename Io, Is<RandomEffects> T>
-void fields(Io& io, T& of) {
-  io("gyros", of.count);
-  io("mean", of.mean);
-  io("mean_std_error", of.mean_std_error);
-  io("spread", of.spread);
-  io("q", of.q);
-  io("i_squared", of.i_squared);
-}
-template <typename Io, Is<TypePrior> T>
-void fields(Io& io, T& of) {
-  io("share", of.share);
-  io("mean", of.mean);
-  io("mean_std_error", of.mean_std_error);
-  io("spread", of.spread);
-  io("likeliest_spread", of.likeliest_spread);
-  io("likelihood_ratio", of.likelihood_ratio);
-}
-
-Json fleet_json(const Population& population) {
-  Json json = {{"schema", "ifog.fleet/1"},
-               {"type", population.type},
-               {"significance", population.significance},
-               {"gyros", population.serials},
-               {"failed", Json::array()},
-               {"effects", Json::array()},
-               {"parameters", Json::array()},
-               {"standing_out", Json::array()},
-               {"own_effects", Json::array()},
-               {"remarks", population.remarks}};
+nlohmann::json fleet_json(const Population& population) {
+  nlohmann::json json = {{"schema", "ifog.fleet/1"},
+                         {"type", population.type},
+                         {"significance", population.significance},
+                         {"gyros", population.serials},
+                         {"failed", nlohmann::json::array()},
+                         {"effects", nlohmann::json::array()},
+                         {"parameters", nlohmann::json::array()},
+                         {"standing_out", nlohmann::json::array()},
+                         {"own_effects", nlohmann::json::array()},
+                         {"remarks", population.remarks}};
   for (const Population::Failure& each : population.failed)
     json["failed"].push_back({{"serial", population.serials[each.gyro]}, {"why", each.why}});
   for (const TypeEffect& each : population.effects)
@@ -303,7 +285,7 @@ Json fleet_json(const Population& population) {
                                     {"robust_z", each.z}});
   }
   for (const FoundInGyro& each : population.own) {
-    Json effect = as_json(each.effect);
+    nlohmann::json effect = each.effect;
     effect["serial"] = population.serials[each.gyro];
     json["own_effects"].push_back(std::move(effect));
   }

@@ -50,7 +50,7 @@ bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
 std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects);
 
 // Schema ifog.fleet/1.
-nlohmann::ordered_json fleet_json(const Population& population);
+nlohmann::json fleet_json(const Population& population);
 
 // The gyro's model with the type's effects that it has, and without those it does not have. Coefficients that
 // were fitted with them are conditional on the type's distribution; lines, tables and other parts are

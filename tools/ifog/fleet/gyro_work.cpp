@@ -10,7 +10,6 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/files/output_file.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
 #include "tools/ifog/console/say.h"
@@ -18,30 +17,11 @@
 namespace ifog::tools {
 namespace {
 
-struct Opened {
-  std::vector<LongCapture> read;
-  std::vector<CaptureView> captures;  // of `read`
-  std::vector<std::string> hashes;
-};
-
-Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
-  Opened opened;
-  for (const std::string& path : gyro.captures) {
-    opened.hashes.emplace_back();
-    opened.read.push_back(settings.input.read_long_capture(path, &opened.hashes.back()));
-    opened.read.back().cut(settings.part, path);
-    opened.captures.push_back(opened.read.back().view());
-  }
-  const std::vector<std::string> unusable = unusable_axes(opened.captures, gyro.captures);
-  for (CaptureView& capture : opened.captures) leave_out(unusable, capture);
-  return opened;
-}
-
 void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
-                   const Opened& opened) {
+                   const PreparedCaptures& opened) {
   AxesToDiagnose wanted = settings.wanted;
   wanted.threads = 1;  // other processors work on other gyros
-  const std::vector<AxisDiagnosis> found = diagnose_axes(opened.captures, gyro.captures, wanted);
+  const std::vector<AxisDiagnosis> found = diagnose_axes(opened.views, gyro.captures, wanted);
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");
@@ -49,7 +29,7 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_file(results.path(gyro, "report.html"),
-             diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path,
+             diagnosis_report(opened.views, found, gyro.captures, opened.hashes, model_path,
                               settings.input.as_typed()));
 }
 
@@ -69,8 +49,8 @@ EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, 
     wanted.instead.emplace_back(forms.begin() + 1, forms.end());
   }
   for (const Effect& effect : model.effects) {
-    const bool of_the_type = std::any_of(type.effects.begin(), type.effects.end(),
-                                         [&](const TypeCandidate& each) { return is_of(each, effect); });
+    const bool of_the_type =
+        std::ranges::any_of(type.effects, [&](const TypeCandidate& each) { return is_of(each, effect); });
     if (effect.axis == axis && !of_the_type) wanted.others.push_back(effect);
   }
   return wanted;
@@ -89,10 +69,10 @@ void refuse_without_error(AxisMeasured& axis) {
 
 std::vector<AxisMeasured> measure_gyro(const Results& results, const FleetGyro& gyro,
                                        const FleetSettings& settings, const TypeToMeasure& type,
-                                       const Opened& opened) {
+                                       const PreparedCaptures& opened) {
   const Model model = read_model(results.path(gyro, "model.toml"));
   std::vector<AxisMeasured> measured;
-  const std::vector<std::string>& axes = opened.captures.front().axes;
+  const std::vector<std::string>& axes = opened.views.front().axes;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     AxisMeasured axis;
     axis.axis = axes[a];
@@ -100,12 +80,12 @@ std::vector<AxisMeasured> measure_gyro(const Results& results, const FleetGyro& 
     const EffectsToMeasure wanted = effects_of_axis(type, model, axes[a], numbers);
     if (wanted.together.empty()) continue;
     MeasuredEffects found = naming(gyro.captures.front(), [&] {
-      return measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
+      return measure_effects(records_of(opened.views, gyro.captures, a), wanted, axes[a],
                              settings.wanted.options.significance);
     });
     for (std::size_t i = 0; i < numbers.size(); ++i)
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
-    axis.others = std::move(found.others);
+    axis.beside = std::move(found.others);
     axis.covariance = std::move(found.covariance);
     axis.means = std::move(found.means);
     axis.ranges = std::move(found.ranges);
@@ -159,10 +139,13 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
   results.make_folder_of(gyro);
   // Before reading: a file that changes while it is read is processed again.
   const std::string inputs = identity_of(gyro, options);
-  std::optional<Opened> opened;
+  const auto read = [&] {
+    return settings.input.prepared(gyro.captures, {.part = settings.part, .hashed = true});
+  };
+  std::optional<PreparedCaptures> opened;
   if (!is_diagnosed(results, gyro, options)) {
     try {
-      opened = read_captures(gyro, settings);
+      opened = read();
       diagnose_gyro(results, gyro, settings, *opened);
     } catch (const std::runtime_error& error) {
       results.write(gyro, GyroDone{gyro.serial, gyro.captures, inputs, error.what()});
@@ -175,7 +158,7 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
   if (!type || type->effects.empty() || is_measured(results, gyro, options, *type)) return;
   GyroMeasured measured{gyro.serial, type->id, inputs, std::nullopt, {}};
   try {
-    if (!opened) opened = read_captures(gyro, settings);
+    if (!opened) opened = read();
     measured.axes = measure_gyro(results, gyro, settings, *type, *opened);
   } catch (const std::runtime_error& error) {
     measured.failed = error.what();

@@ -2,6 +2,7 @@
 #include "tools/ifog/fleet/manifest.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -24,7 +25,7 @@ constexpr const char* kSerial =
 
 bool is_serial(const std::string& text) {
   return text.size() <= kLongestName && text.front() != '.' && text.front() != '-' &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+         std::ranges::all_of(text, [](unsigned char c) {
            return (c < 0x80 && std::isalnum(c) != 0) || c == '.' || c == '_' || c == '-';
          });
 }
@@ -61,8 +62,7 @@ Manifest parse_manifest(std::string_view text, const std::string& path) {
     TableReader of(*gyro, "gyro", path, errors);
     FleetGyro each;
     each.serial = of.required_text("serial", kSerial);
-    std::string name = each.serial;
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = boost::to_lower_copy(each.serial);
     if (!name.empty() && !is_serial(name))
       of.complain("serial", " = " + in_quotes(each.serial) + ": expected " + kSerial);
     else if (!names.insert(name).second)

@@ -15,13 +15,16 @@
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/field/state_json.h"
+
+namespace ifog {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TypeCandidate, found_in, forms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ChannelRange, channel, low, high)
+}  // namespace ifog
 
 namespace ifog::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShort = 16;  // hex digits of an id
 constexpr const char *kTypeSchema = "ifog.type/1", *kGyroSchema = "ifog.gyro/1",
@@ -43,7 +46,7 @@ std::optional<T> read_marker(const std::string& path, const std::string& schema)
   try {
     const nlohmann::json json = parse_json(read_whole_file(path), path);
     if (json.at("schema") != schema) return std::nullopt;
-    return from_json<T>(json);
+    return json.get<T>();
   } catch (const std::exception&) {
     return std::nullopt;
   }
@@ -59,57 +62,12 @@ std::string stamp(const fs::path& path) {
 
 }  // namespace
 
-template <typename Io, Is<TypeCandidate> T>
-void fields(Io& io, T& of) {
-  io("found_in", of.found_in);
-  io("forms", of.forms);
-}
-template <typename Io, Is<ChannelRange> T>
-void fields(Io& io, T& of) {
-  io("channel", of.channel);
-  io("low", of.low);
-  io("high", of.high);
-}
-template <typename Io, Is<EffectOfType> T>
-void fields(Io& io, T& of) {
-  io("of_type", of.of_type);
-  io("effect", of.effect);
-  io("likelihood_ratio", of.likelihood_ratio);
-  io("not_measured", of.not_measured);
-  io("instead", of.instead);
-}
-template <typename Io, Is<AxisMeasured> T>
-void fields(Io& io, T& of) {
-  io("axis", of.axis);
-  io("together", of.together);
-  io("beside", of.others);
-  io("covariance", of.covariance);
-  io("means", of.means);
-  io("ranges", of.ranges);
-}
-
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectOfType, of_type, effect, likelihood_ratio, not_measured, instead)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AxisMeasured, axis, together, beside, covariance, means, ranges)
 // Content of the files after their schema.
-template <typename Io, Is<TypeToMeasure> T>
-void fields(Io& io, T& of) {
-  io("id", of.id);
-  io("type", of.type);
-  io("effects", of.effects);
-}
-template <typename Io, Is<GyroDone> T>
-void fields(Io& io, T& of) {
-  io("serial", of.serial);
-  io("captures", of.captures);
-  io("inputs", of.inputs);
-  io("failed", of.failed);
-}
-template <typename Io, Is<GyroMeasured> T>
-void fields(Io& io, T& of) {
-  io("serial", of.serial);
-  io("type", of.type);
-  io("inputs", of.inputs);
-  io("failed", of.failed);
-  io("axes", of.axes);
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TypeToMeasure, id, type, effects)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GyroDone, serial, captures, inputs, failed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GyroMeasured, serial, type, inputs, failed, axes)
 
 Results::Results(std::string folder) : folder_(std::move(folder)) { make_folder(fs::path(folder_) / "log"); }
 
@@ -154,7 +112,8 @@ std::optional<GyroMeasured> Results::measured(const FleetGyro& gyro, const std::
 
 void Results::write(TypeToMeasure& type) const {
   type.id =
-      sha256_hex(as_json(type.effects).dump(-1, ' ', true, Json::error_handler_t::replace)).substr(0, kShort);
+      sha256_hex(nlohmann::json(type.effects).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))
+          .substr(0, kShort);
   write_json(path("type.json"), with_schema(kTypeSchema, type));
 }
 
@@ -187,7 +146,7 @@ std::string identity_of(const FleetGyro& gyro, const std::string& options) {
     std::vector<std::string> inside;
     for (const fs::directory_entry& each : fs::directory_iterator(capture, none))
       inside.push_back(stamp(each.path()));
-    std::sort(inside.begin(), inside.end());
+    std::ranges::sort(inside);
     for (const std::string& each : inside) text += each;
   }
   return sha256_hex(text).substr(0, kShort);

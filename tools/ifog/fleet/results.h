@@ -21,6 +21,13 @@
 #include "tools/ifog/console/json.h"
 #include "tools/ifog/fleet/manifest.h"
 
+namespace ifog {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ModelParameter, name, value, std_error, unit)
+// Identity of an effect, without the table of a "lookup", which differs between gyros.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Effect, axis, form, channel, with_form, with_channel, reference,
+                                   with_reference, period, meaning, parameters)
+}  // namespace ifog
+
 namespace ifog::tools {
 
 // The type's effects, all on the axes of one sensor.
@@ -47,7 +54,7 @@ struct EffectOfType : MeasuredEffect {
 struct AxisMeasured {
   std::string axis;
   std::vector<EffectOfType> together;  // those of this axis
-  std::vector<Effect> others;
+  std::vector<Effect> beside;          // others of the model, fitted with them
   std::vector<double> covariance, means;
   std::vector<ChannelRange> ranges;
 };
@@ -99,27 +106,5 @@ std::string measured_name(const std::string& type_id);
 // Identifies the captures with these options: by size and time of the files, because reading days of data
 // takes too long.
 std::string identity_of(const FleetGyro& gyro, const std::string& options);
-
-template <typename Io, Is<ModelParameter> T>
-void fields(Io& io, T& of) {
-  io("name", of.name);
-  io("value", of.value);
-  io("std_error", of.std_error);
-  io("unit", of.unit);
-}
-// Identity of an effect, without the table of a "lookup", which differs between gyros.
-template <typename Io, Is<Effect> T>
-void fields(Io& io, T& of) {
-  io("axis", of.axis);
-  io("form", of.form);
-  io("channel", of.channel);
-  io("with_form", of.with_form);
-  io("with_channel", of.with_channel);
-  io("reference", of.reference);
-  io("with_reference", of.with_reference);
-  io("period", of.period);
-  io("meaning", of.meaning);
-  io("parameters", of.parameters);
-}
 
 }  // namespace ifog::tools

@@ -37,7 +37,7 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
     of_type.push_back(found ? here : nullptr);
     all.push_back(axis.together[i].effect);
   }
-  all.insert(all.end(), axis.others.begin(), axis.others.end());
+  all.insert(all.end(), axis.beside.begin(), axis.beside.end());
   const auto size = static_cast<Eigen::Index>(all.size());
   JointEstimate own{Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -80,7 +80,7 @@ double mean_moved(const Fitted& fitted, const AxisMeasured& axis, const std::vec
 // True if the effect was in the fit, even if the model does not contain it: of the type, or another one
 // fitted with them.
 bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
-  if (std::ranges::any_of(axis.others, [&](const Effect& other) { return alike(other, effect); }))
+  if (std::ranges::any_of(axis.beside, [&](const Effect& other) { return alike(other, effect); }))
     return true;
   for (std::size_t i = 0; i < axis.together.size(); ++i)
     if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.together[i].of_type], effect))
@@ -124,9 +124,9 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
         model.ranges.push_back(range);
   }
   for (const Effect& effect : own.effects) {
-    const bool fitted = std::any_of(
-        measured.axes.begin(), measured.axes.end(),
-        [&](const AxisMeasured& axis) { return axis.axis == effect.axis && was_fitted(type, axis, effect); });
+    const bool fitted = std::ranges::any_of(measured.axes, [&](const AxisMeasured& axis) {
+      return axis.axis == effect.axis && was_fitted(type, axis, effect);
+    });
     if (!fitted) model.effects.push_back(effect);
   }
   for (Effect& effect : model.effects)

@@ -11,7 +11,7 @@
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
-#include "tools/ifog/field/proposal.h"
+#include "tools/ifog/field/models.h"
 
 namespace ifog::tools {
 namespace {
@@ -22,7 +22,7 @@ void look_at_model(const Field& field, const SensorConfig& sensor, KnownSensor& 
   if (!in_use.model) return;
   known.identity = in_use.name.identity;
   std::string date = in_use.model->source.date.substr(0, 16);  // to the minute
-  std::replace(date.begin(), date.end(), 'T', ' ');
+  std::ranges::replace(date, 'T', ' ');
   known.model = printable(std::filesystem::path(field.model_path(sensor)).filename().string()) +
                 (date.empty() ? "" : " of " + printable(date));
 }

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/predicate.hpp>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -19,10 +19,9 @@
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 
@@ -97,11 +96,7 @@ void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
 }
 
 bool Monitor::wanted(const std::string& name) const {
-  return options_.sensor.empty() ||
-         std::equal(name.begin(), name.end(), options_.sensor.begin(), options_.sensor.end(),
-                    [](char a, char b) {
-                      return a == static_cast<char>(std::toupper(static_cast<unsigned char>(b)));
-                    });
+  return options_.sensor.empty() || boost::iequals(name, options_.sensor);
 }
 
 void Monitor::end_interval(double seconds) {
@@ -134,13 +129,13 @@ void Monitor::say_what_is_waited_for() {
 }
 
 bool Monitor::received_any() const {
-  return std::any_of(sensors_.begin(), sensors_.end(),
-                     [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
+  return std::ranges::any_of(
+      sensors_, [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
 }
 
 bool Monitor::all_shown() const {
-  return !sensors_.empty() && std::all_of(sensors_.begin(), sensors_.end(),
-                                          [](const auto& entry) { return entry.second.shown(); });
+  return !sensors_.empty() &&
+         std::ranges::all_of(sensors_, [](const auto& entry) { return entry.second.shown(); });
 }
 
 bool Monitor::run() {
@@ -192,7 +187,8 @@ void add_monitor(const Command& program) {
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
   command.add_option(
       "--json", options->json,
-      "Instead of the figures every message as a line of JSON to this file; - is standard output");
+      "Instead of the figures every message as a line of JSON to this file; - is standard output",
+      kWritesJson);
   command.add_option(
       "--web", options->web,
       "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
@@ -211,7 +207,6 @@ void add_monitor(const Command& program) {
     // Without a time limit, --once gives up like a script, because a daemon may never start.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
-    will_write("--json", options->json, kJsonEndings);
     Monitor monitor(*options);
     if (!monitor.run()) {
       if (const std::string others = monitor.who_publishes(); !others.empty())

@@ -11,7 +11,6 @@
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
-#include <cwchar>
 #include <utility>
 
 #include "tools/ifog/console/errors.h"
@@ -23,21 +22,6 @@ namespace {
 constexpr std::array kColours{std::pair{Tone::good, static_cast<short>(COLOR_GREEN)},
                               std::pair{Tone::warning, static_cast<short>(COLOR_YELLOW)},
                               std::pair{Tone::bad, static_cast<short>(COLOR_RED)}};
-
-// Truncates, because longer text would continue in the next line.
-std::string cut(const std::string& text, int columns) {
-  std::mbstate_t state{};
-  int used = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    wchar_t wide = 0;
-    const std::size_t length = std::mbrtowc(&wide, text.data() + at, text.size() - at, &state);
-    if (length == 0 || length > text.size() - at) return text.substr(0, at);
-    used += std::max(0, wcwidth(wide));
-    if (used > columns) return text.substr(0, at);
-    at += length;
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -79,17 +63,17 @@ int Screen::key() {
         return 0;
       case KEY_UP:
       case 'k':
-        scroll(-1);
+        --first_;
         break;
       case KEY_DOWN:
       case 'j':
-        scroll(1);
+        ++first_;
         break;
       case KEY_PPAGE:
-        scroll(-kPage);
+        first_ -= kPage;
         break;
       case KEY_NPAGE:
-        scroll(kPage);
+        first_ += kPage;
         break;
       case KEY_RESIZE:
         break;
@@ -99,32 +83,24 @@ int Screen::key() {
   }
 }
 
-void Screen::scroll(int by) {
-  const auto last = static_cast<std::ptrdiff_t>(lines_) - 1;
-  first_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(first_) + by, 0,
-                                                               std::max<std::ptrdiff_t>(0, last)));
-}
-
 void Screen::draw(const std::vector<ShownLine>& lines, const std::string& foot) {
   const int rows = getmaxy(stdscr), columns = getmaxx(stdscr);
-  lines_ = lines.size();
-  const auto room = static_cast<std::size_t>(std::max(1, rows - 1));
-  // Limits scrolling to lines that do not fit.
-  first_ = std::min(first_, lines_ > room ? lines_ - room : 0);
+  const int room = std::max(1, rows - 1), all = static_cast<int>(lines.size());
+  first_ = std::clamp(first_, 0, std::max(0, all - room));
   erase();
-  for (std::size_t row = 0; row < room && first_ + row < lines_; ++row) {
-    const ShownLine& line = lines[first_ + row];
+  for (int row = 0; row < room && first_ + row < all; ++row) {
+    const ShownLine& line = lines[static_cast<std::size_t>(first_ + row)];
     // A pair that was not defined has no colour.
     const int look =
         line.tone == Tone::figure ? static_cast<int>(A_BOLD) : COLOR_PAIR(static_cast<int>(line.tone));
     attron(look);
-    mvaddnstr(static_cast<int>(row), 0, cut(line.text, columns).c_str(), -1);
+    mvinsstr(row, 0, line.text.c_str());  // cut at the edge
     attroff(look);
   }
   if (rows > 1) {
     attron(A_REVERSE);
     mvhline(rows - 1, 0, ' ', columns);
-    mvaddnstr(rows - 1, 0, cut(foot, columns - 1).c_str(), -1);
+    mvinsstr(rows - 1, 0, foot.c_str());
     attroff(A_REVERSE);
   }
   refresh();

@@ -27,9 +27,7 @@ class Screen {
   void draw(const std::vector<ShownLine>& lines, const std::string& foot);
 
  private:
-  void scroll(int by);
-
-  std::size_t first_ = 0, lines_ = 0;
+  int first_ = 0;  // the line on top
   void* screen_ = nullptr;
 };
 

@@ -12,7 +12,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <semaphore>
@@ -23,6 +22,7 @@
 #include "drivers/ifog/quoted.h"
 #include "msgs/axis_name.h"
 #include "page_source.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
 #include "tools/ifog/monitor/sensor_view.h"
@@ -157,9 +157,9 @@ std::optional<PageAddress> page_address(const std::string& text) {
     std::array<unsigned char, sizeof(in6_addr)> bytes{};
     if (::inet_pton(bracketed ? AF_INET6 : AF_INET, out.host.c_str(), bytes.data()) != 1) return {};
   }
-  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), out.port);
-  if (error != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535) return {};
+  const auto port = whole_in(colon == std::string::npos ? text : text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535) return {};
+  out.port = static_cast<int>(*port);
   return out;
 }
 

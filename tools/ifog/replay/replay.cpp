@@ -21,11 +21,11 @@
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/replay/replay_target.h"
@@ -139,7 +139,6 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
   if (paced)
     say("lateness p50 {:.1f} µs, p99 {:.1f} µs, max {:.1f} µs\n", result.late.percentile_us(0.5),
         result.late.percentile_us(0.99), result.late.max_us());
-  if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
                          {"sent", result.sent},
                          {"of", nullptr},
@@ -159,10 +158,8 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
 
 void run(ReplaySettings settings) {
   const ReplayDestination& to = settings.to;
-  settings.source.input.will_read("capture", settings.source.path);
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
-  will_write("--json", settings.json, kJsonEndings);
   settings.source.prefer_can = to.is_can();
   const ReplayTimeline timeline = read_timeline(settings.source);
   if (to.kind == ReplayDestination::Kind::file) {
@@ -203,12 +200,12 @@ void add_replay(const Command& program) {
   ReplaySource& source = settings->source;
   command.add_option("capture", source.path,
                      "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)",
-                     {.required = true});
+                     {.required = true, .file = FileUse::read});
   command.add_taken<std::string>(
       "--to", [settings](const std::string& text) { settings->to = ReplayDestination::parse(text); },
       "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
       "fifo:PATH or - (standard output)",
-      {.required = true});
+      {.required = true, .type = "WHERE"});
   command.add_option("--format", source.format, "of the recording",
                      {.shows_default = true, .choices = {"auto", "candump", "bytes", "csv"}});
   command.add_option("--speed", settings->speed, "times faster than recorded; 0: as fast as possible",
@@ -235,7 +232,7 @@ void add_replay(const Command& program) {
                                  "serial: none unless given", {.choices = {"none", "even", "odd"}});
   command.add_option("--stop-bits", settings->line.stop_bits, "serial: 1 or 2",
                      {.shows_default = true, .range = within(1, 2)});
-  command.add_option("--json", settings->json, "write the report to this file");
+  command.add_option("--json", settings->json, "write the report to this file", kWritesJson);
   command.callback([settings] { run(*settings); });
 }
 

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <ctime>
 #include <span>
 #include <system_error>
@@ -21,6 +20,8 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can/can_socket.h"
+#include "drivers/transport/network/ip_socket.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
@@ -57,15 +58,11 @@ HostAndPort read_host_and_port(const std::string& text) {
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
   if (bracketed) host = host.substr(1, host.size() - 2);
   const auto address = IpAddress::parse(host);
-  unsigned port = 0;
-  const char* const end = text.data() + text.size();
-  const bool whole = colon != std::string::npos &&
-                     std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
-                     port <= 65535;
-  if (!whole || !address || address->is_v6() != bracketed)
+  const auto port = colon == std::string::npos ? std::nullopt : whole_in(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535 || !address || address->is_v6() != bracketed)
     throw WrongUsage("--to", "is " + in_quotes(text) +
                                  ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
-  return {*address, static_cast<std::uint16_t>(port)};
+  return {*address, static_cast<std::uint16_t>(*port)};
 }
 
 sockaddr_storage socket_address(const HostAndPort& at, const std::string& name, socklen_t& size) {

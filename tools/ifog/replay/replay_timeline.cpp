@@ -48,7 +48,7 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
   std::string two;  // interfaces with frames of one id
   const CandumpLosses lost = for_each_candump_frame(
       file, source.input.channel, [&](const ifog_can_frame& frame, std::string_view from) {
-        auto found = std::find(timeline.interfaces.begin(), timeline.interfaces.end(), from);
+        auto found = std::ranges::find(timeline.interfaces, from);
         if (found == timeline.interfaces.end()) found = timeline.interfaces.emplace(found, from);
         const auto number = found - timeline.interfaces.begin();
         if (number > std::numeric_limits<std::uint16_t>::max())

@@ -27,13 +27,10 @@
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/json.h"
-#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/noise_at_rest.h"
@@ -82,9 +79,7 @@ json outcome_json(const Outcome& outcome, const std::vector<std::string>& axes) 
 json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
   json figures = json::object();
   for (const TunedFigure& f : model.figures)
-    figures[f.name] = {{"value", f.value},
-                       {"std_error", f.std_error ? json(*f.std_error) : json(nullptr)},
-                       {"unit", f.unit}};
+    figures[f.name] = {{"value", f.value}, {"std_error", f.std_error}, {"unit", f.unit}};
   if (model.walk_is_bound) figures["process_noise"]["bound"] = true;
   return {{"state", model.settings.state},
           {"state_parameters", model.settings.state_parameters},
@@ -125,9 +120,8 @@ void print_figure(const std::string& name, double before, double after, const do
 void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) {
   const TunedModel& chosen = tuning.models[tuning.chosen];
   if (!chosen.held_out) return;
-  const auto found = std::find_if(tuning.models.begin(), tuning.models.end(), [&](const TunedModel& m) {
-    return m.held_out && m.settings.state == "random-walk";
-  });
+  const auto found = std::ranges::find_if(
+      tuning.models, [&](const TunedModel& m) { return m.held_out && m.settings.state == "random-walk"; });
   const Outcome* walk = found == tuning.models.end() || &*found == &chosen ? nullptr : &*found->held_out;
   say("\nfitted to the first half, the second half as denoise makes it, deg/h\n  {:<22} {:>12} {:>12}{}\n",
       "", "measured", "denoised", walk ? "  random-walk" : "");
@@ -163,47 +157,35 @@ json rest_noise_json(const NoiseByAxis& noise) {
   return axes;
 }
 
-std::string axis_label(const CaptureView& capture, std::size_t axis) {
-  return capture.axes[axis].empty() ? "" : capture.axes[axis] + ": ";
-}
-
-// Replaces single jumps in the capture by values in `repaired`. Other faults of the logging program are
-// noted, because a fit to such data is not a gyro's noise.
-void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
+// Noise by axis. Replaces single jumps in the capture by values in `repaired`. Other faults of the logging
+// program are noted, because a fit to such data is not a gyro's noise. An axis that is too short has no terms,
+// which is noted.
+NoiseByAxis noise_of(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<Samples>& repaired, std::vector<std::string>& notes) {
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    std::span<const double>& rate = capture.rate_radps[a];
-    const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
-    std::vector<ValueFault> faults;
-    std::optional<Samples> cleaned = without_leaps(
-        rate, rate, parts, [&](std::size_t i) { return capture.shown_time_s(i); }, faults);
-    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned));
-    find_value_faults(rate, parts, clock.period_s, faults);
-    for (const ValueFault& fault : faults) notes.push_back(axis_label(capture, a) + fault.text);
-  }
-}
-
-// An axis that is too short has none, which is noted.
-NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
-                     std::vector<std::string>& notes) {
   NoiseByAxis noise;
   bool unexplained = false;
+  const auto shown_time_s = [&](std::size_t i) { return capture.shown_time_s(i); };
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    const std::span<const double> rate = capture.rate_radps[a];
+    std::span<const double>& rate = capture.rate_radps[a];
+    const std::string& axis = capture.axes[a];
+    const auto note = [&](const std::string& text) {
+      notes.push_back((axis.empty() ? "" : axis + ": ") + text);
+    };
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
+    std::vector<ValueFault> faults;
+    std::optional<Samples> cleaned = without_leaps(rate, rate, parts, shown_time_s, faults);
+    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned));
+    find_value_faults(rate, parts, clock.period_s, faults);
+    for (const ValueFault& fault : faults) note(fault.text);
     try {
-      RestNoise found{
-          noise_coefficients(AngleSum(rate, parts), clock.period_s),
-          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.shown_time_s(i); })};
-      for (const std::string& miss : misfit_in_words(found.terms))
-        notes.push_back(axis_label(capture, a) + miss);
+      RestNoise found{noise_coefficients(AngleSum(rate, parts), clock.period_s),
+                      noise_changes(rate, parts, clock.period_s, shown_time_s)};
+      for (const std::string& miss : misfit_in_words(found.terms)) note(miss);
       unexplained = unexplained || !found.terms.left_out_hz.empty();
-      if (const std::string change = in_words(found.changes); !change.empty())
-        notes.push_back(axis_label(capture, a) + change);
-      noise[capture.axes[a]] = std::move(found);
+      if (const std::string change = in_words(found.changes); !change.empty()) note(change);
+      noise[axis] = std::move(found);
     } catch (const std::invalid_argument& error) {
-      notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
-                      error.what());
+      notes.push_back("no noise terms" + (axis.empty() ? "" : " of " + axis) + ": " + error.what());
     }
   }
   if (unexplained)
@@ -223,12 +205,9 @@ Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, con
   model.filter->measurement_noise = tuned.measurement_noise;
   model.filter->state_parameters = tuned.state_parameters;
   for (const auto& [axis, found] : noise) {
-    const auto put = [](const NoiseCoefficient& c, std::optional<double>& value) {
-      if (c.present) value = c.value;
-    };
     NoiseTerms& terms = model.noise[axis] = {};
     for (const report::NamedCoefficient& named : report::named_coefficients())
-      put(found.terms.*named.member, terms.*named.term);
+      if (const NoiseCoefficient& c = found.terms.*named.member; c.present) terms.*named.term = c.value;
   }
   if (!model.effects.empty()) return model;  // whose effects are from the captures that it names
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
@@ -251,30 +230,19 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
               {"models", models}};
 }
 
-// Reads the required columns and subtracts a model's effects.
-LongCapture read_rates(const TuneArguments& options, const Model& before) {
-  LongCapture read =
-      options.input.read_long_capture(options.capture, nullptr, [&](const std::string& column) {
-        return !before.effects.empty() || column.starts_with("rate") ||
-               column.starts_with("reference_rate") || is_other_rate(column);
-      });
-  if (before.effects.empty()) return read;
-  if (options.since_power_up_s) read.set_since_power_up(*options.since_power_up_s);
-  tell_model_of_one_axis(before, options.model, read.view().axes);
-  naming(options.model, [&] { read.correct(before); });
-  return read;
-}
-
 void run_tune(const TuneArguments& options) {
-  options.input.will_read("capture", options.capture);
-  will_read("--model", options.model);
-  will_write("--json", options.json_file, kJsonEndings);
-  will_write("--write-model", options.write_model, kModelEndings);
   const Model before = options.model.empty() ? Model{} : read_model(options.model);
-  LongCapture read = read_rates(options, before);
-  read.cut(options.part, options.capture);
-  CaptureView capture = read.view();
-  leave_out(unusable_axes({capture}, {options.capture}), capture);
+  const auto wanted = [&](const std::string& column) {
+    return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate") ||
+           is_other_rate(column);
+  };
+  const PreparedCaptures prepared =
+      options.input.prepared({options.capture}, {.part = options.part,
+                                                 .model = &before,
+                                                 .model_path = options.model,
+                                                 .since_power_up_s = options.since_power_up_s,
+                                                 .wanted = wanted});
+  CaptureView capture = prepared.views.front();
   if (capture.size() < 3)
     throw refusal("{}: {} rows, expected at least 200", options.capture, capture.size());
   const SampleClock clock = sample_clock(capture.time_s);
@@ -285,8 +253,7 @@ void run_tune(const TuneArguments& options) {
   std::vector<std::string> notes;
   std::vector<Samples> repaired;
   repaired.reserve(capture.axes.size());
-  leave_out_leaps(capture, clock, rest, repaired, notes);
-  const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
+  const NoiseByAxis noise = noise_of(capture, clock, rest, repaired, notes);
   if (const std::string motion = in_words(rest, period, capture.shown_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
   if (const std::string slow = slow_turns_in_words(rest, period, capture.shown_time_s(0)); !slow.empty())
@@ -305,8 +272,7 @@ void run_tune(const TuneArguments& options) {
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
     say("\nnoise{}{} at rest\n{}", axis.empty() ? "" : " of ", axis, report::coefficient_lines(found.terms));
-  if (!options.json_file.empty())
-    write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
+  write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
   if (!options.write_model.empty()) {
     write_file(options.write_model, model_text(model_of(before, tuning, noise, options.capture)));
     say("\nto use it: ifog denoise {}{} --model {} --output denoised.csv\n", shell_file(options.capture),
@@ -321,16 +287,18 @@ void add_tune(const Command& program) {
       program.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
   options->input.other_rates = true;
-  command.add_option("capture", options->capture, "a capture at rest", {.required = true});
+  command.add_option("capture", options->capture, "a capture at rest",
+                     {.required = true, .file = FileUse::read});
   command.add_option("--model", options->model,
-                     "correct with this model first; its effects stay in what is written");
+                     "correct with this model first; its effects stay in what is written", kReadsFile);
   command.add_option(
       "--since-power-up", options->since_power_up_s,
       "seconds from power-up to the capture's first sample, for a warm_up of --model; default: as "
       "a recording says it",
       {.range = not_negative()});
-  command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
-  command.add_option("--json", options->json_file, "write the figures as JSON");
+  command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read",
+                     {.file = FileUse::written, .endings = kModelEndings});
+  command.add_option("--json", options->json_file, "write the figures as JSON", kWritesJson);
   // One per option, so that a following capture is not read as a state model.
   command.add_option("--state", options->states, "state models to try; may stand several times",
                      {.one_value_each = true});

@@ -23,12 +23,7 @@ std::string parameter_rows(const FoundEffect& found) {
   std::string out;
   for (const ModelParameter& p : shown_parameters(found)) {
     const FieldUnit unit = field_unit(p.unit);
-    std::string name = p.name;
-    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has its own column
-      if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
-    }
-    std::replace(name.begin(), name.end(), '_', ' ');
-    out += row(escaped(name),
+    out += row(escaped(parameter_words(p.name)),
                {number_cell(with_error(p.value * unit.scale, p.std_error * unit.scale)), escaped(unit.unit)});
   }
   return out;
@@ -77,7 +72,7 @@ std::string tiles(const Diagnosis& d) {
     const bool known = before != d.before.end() && after != d.after.end() && before->second > 0.0;
     return known ? after->second / before->second : std::numeric_limits<double>::infinity();
   };
-  std::stable_sort(keys.begin(), keys.end(), [&](const char* a, const char* b) { return left(a) < left(b); });
+  std::ranges::stable_sort(keys, [&](const char* a, const char* b) { return left(a) < left(b); });
   for (const char* key : keys) {
     const auto before = d.before.find(key), after = d.after.find(key);
     if (before == d.before.end() || after == d.after.end() || !std::isfinite(before->second)) continue;

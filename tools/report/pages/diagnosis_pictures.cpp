@@ -24,15 +24,19 @@ namespace {
 
 using Series = std::vector<double>;
 
-// Minus the mean, which is the switch-on bias.
-Series centred(Series x, double scale) {
+// Subtracts the mean, which is the switch-on bias.
+template <typename Values>
+void centre(Values& x) {
   double sum = 0.0;
   std::size_t count = 0;
   for (const double value : x)
     if (std::isfinite(value)) sum += value, ++count;
-  for (double& value : x)
-    value = (value - sum / static_cast<double>(std::max<std::size_t>(count, 1))) * scale;
-  return x;
+  for (double& value : x) value -= sum / static_cast<double>(std::max<std::size_t>(count, 1));
+}
+
+Series centred(Series x, double scale) {
+  centre(x);
+  return scaled(std::move(x), scale);
 }
 
 // Times as in the captures' columns.
@@ -69,14 +73,7 @@ Trace error_without(const Record& record, const Diagnosis& diagnosis, std::size_
     if (i != kept) others.effects.push_back(diagnosis.effects[i].effect);
   for (Effect& e : others.effects) e.axis.clear();
   Trace error = compensated_error(record, others);
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const double value : error) {
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    ++count;
-  }
-  for (double& value : error) value -= sum / static_cast<double>(std::max<std::size_t>(count, 1));
+  centre(error);
   return error;
 }
 
@@ -132,7 +129,7 @@ void bin(const Trace& x, const Trace& y, std::size_t bins, Traced& out) {
   Column<std::size_t> order;
   for (std::size_t k = 0; k < x.size(); ++k)
     if (std::isfinite(x[k]) && std::isfinite(y[k])) order.push_back(k);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
   for (std::size_t b = 0; b < std::min(bins, order.size()); ++b) {
     const std::size_t from = b * order.size() / bins, to = std::max(from + 1, (b + 1) * order.size() / bins);
     if (to > order.size()) break;
@@ -144,10 +141,6 @@ void bin(const Trace& x, const Trace& y, std::size_t bins, Traced& out) {
     out.x.push_back(sx / static_cast<double>(to - from));
     out.y.push_back(sy / static_cast<double>(to - from));
   }
-}
-
-double mean(std::span<const double> x) {
-  return x.empty() ? 0.0 : std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
 }
 
 }  // namespace
@@ -278,25 +271,23 @@ Traced trace(const std::vector<Record>& records, const Diagnosis& diagnosis, std
   if (*form == Form::kLookup) {
     out.curve_x = effect.table_x;
     out.curve_y = effect.table_y;
-    const double level = mean(out.curve_y);
-    for (double& value : out.curve_y) value -= level;
-    const double middle = mean(out.y);
-    for (double& value : out.y) value -= middle;
+    centre(out.curve_y);
+    centre(out.y);
     return out;
   }
   const double size = parameter(effect, "coefficient");
   const bool over_channel = effect.with_channel.empty() && power_of(*form) > 0;
   const Shape shape(over_channel ? shape_settings(effect) : ShapeSettings{});
+  const auto fitted = [&](double x) { return size * (over_channel ? shape.at(x) : x); };
   for (int i = 0; i <= 200; ++i) {
     const double x = out.x.front() + (out.x.back() - out.x.front()) * i / 200.0;
     out.curve_x.push_back(x);
-    out.curve_y.push_back(size * (over_channel ? shape.at(x) : x));
+    out.curve_y.push_back(fitted(x));
   }
   // The offset is the switch-on bias: the curve is moved to the points.
   double offset = 0.0;
   for (std::size_t i = 0; i < out.x.size(); ++i)
-    offset += (out.y[i] - size * (over_channel ? shape.at(out.x[i]) : out.x[i])) /
-              static_cast<double>(out.x.size());
+    offset += (out.y[i] - fitted(out.x[i])) / static_cast<double>(out.x.size());
   for (double& value : out.curve_y) value += offset;
   return out;
 }

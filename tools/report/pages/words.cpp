@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <cmath>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "filters/model_file/channel_names.h"
@@ -15,18 +18,6 @@
 namespace ifog::report {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& end, std::string& head) {
-  if (text.size() < end.size() || text.compare(text.size() - end.size(), end.size(), end) != 0) return false;
-  head = text.substr(0, text.size() - end.size());
-  return true;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 std::string typeset_unit(std::string unit) {
   static constexpr std::array<std::pair<const char*, const char*>, 8> kUnits{{{"degC", "°C"},
                                                                               {"radps", "rad/s"},
@@ -36,7 +27,7 @@ std::string typeset_unit(std::string unit) {
                                                                               {"^2", "²"},
                                                                               {"^3", "³"},
                                                                               {"*", "·"}}};
-  for (const auto& [from, to] : kUnits) unit = replaced(unit, from, to);
+  for (const auto& [from, to] : kUnits) boost::replace_all(unit, from, to);
   return unit;
 }
 
@@ -52,9 +43,9 @@ double averaging_time(const std::string& key) {
 }
 
 int family(const std::string& key) {
-  if (key.rfind("residual", 0) == 0) return 0;
-  if (key.rfind("rms", 0) == 0) return 1;
-  if (key.rfind("adev", 0) == 0) return 2;
+  if (key.starts_with("residual")) return 0;
+  if (key.starts_with("rms")) return 1;
+  if (key.starts_with("adev")) return 2;
   return 3;
 }
 
@@ -104,9 +95,8 @@ std::string channel_words(const std::string& column) {
   const ChannelNames names = names_in(column);
   if (!names.less.empty()) return channel_words(names.of) + " less " + channel_words(names.less);
   const std::string unit = raw_unit(column);
-  std::string head = column;
-  if (!unit.empty()) ends_with(column, "_" + unit, head);
-  return replaced(head, "_", " ");
+  const std::string head = unit.empty() ? column : column.substr(0, column.size() - unit.size() - 1);
+  return boost::replace_all_copy(head, "_", " ");
 }
 
 std::string channel_label(const std::string& column) {
@@ -136,7 +126,7 @@ std::string abscissa_label(const Effect& e) {
 
 std::string effect_words(const Effect& e) {
   if (e.form == "line") return "line at " + number(parameter(e, "frequency_hz"), 4) + " Hz";
-  std::string out = replaced(e.form, "_", " ");
+  std::string out = boost::replace_all_copy(e.form, "_", " ");
   if (!e.channel.empty()) out += " in " + channel_words(e.channel);
   if (e.form == "rate") out = "rate of change of " + channel_words(e.channel);
   if (e.form == "lagged") out = channel_words(e.channel) + ", lagged";
@@ -164,30 +154,38 @@ std::vector<ModelParameter> shown_parameters(const FoundEffect& found) {
   return out;
 }
 
+std::string parameter_words(std::string name) {
+  for (const std::string_view unit : {"_hz", "_s"})
+    if (name.ends_with(unit)) name.erase(name.size() - unit.size());
+  return boost::replace_all_copy(name, "_", " ");
+}
+
 Figure figure(const std::string& key) {
-  std::string head;
   if (key == "residual_rms_radps") return {"RMS of single samples", "°/h", 1.0 / kDegreePerHour};
   if (key == "heading_drift_rad")
     return {"heading at the end, bias from the first tenth", "°", 1.0 / kDegree};
   if (key == "whiteness") return {"correlation of 1 s means (0: white noise)", "", 1.0};
-  if (ends_with(key, "_radps", head) && head.rfind("rms_", 0) == 0)
-    return {"RMS of " + replaced(head.substr(4), "s", " s") + " means", "°/h", 1.0 / kDegreePerHour};
-  if (ends_with(key, "_radps", head) && head.rfind("adev_", 0) == 0)
-    return {"Allan deviation at " + replaced(head.substr(5), "s", " s"), "°/h", 1.0 / kDegreePerHour};
-  Figure f{replaced(key, "_", " "), "", 1.0};
-  if (ends_with(key, "_rad2ps2", head))
-    f = {replaced(head, "_", " "), "(°/h)²", 1.0 / (kDegreePerHour * kDegreePerHour)};
-  if (ends_with(key, "_radps", head)) f = {replaced(head, "_", " "), "°/h", 1.0 / kDegreePerHour};
-  if (ends_with(key, "_rad", head)) f = {replaced(head, "_", " "), "°", 1.0 / kDegree};
-  return f;
+  for (const auto& [ending, unit, scale] :
+       {std::tuple{"_rad2ps2", "(°/h)²", 1.0 / (kDegreePerHour * kDegreePerHour)},
+        std::tuple{"_radps", "°/h", 1.0 / kDegreePerHour}, std::tuple{"_rad", "°", 1.0 / kDegree}}) {
+    if (!key.ends_with(ending)) continue;
+    const std::string head = key.substr(0, key.rfind('_'));
+    const auto time_after = [&](std::size_t begin) {
+      return boost::replace_all_copy(head.substr(begin), "s", " s");
+    };
+    if (head.starts_with("rms_")) return {"RMS of " + time_after(4) + " means", unit, scale};
+    if (head.starts_with("adev_")) return {"Allan deviation at " + time_after(5), unit, scale};
+    return {boost::replace_all_copy(head, "_", " "), unit, scale};
+  }
+  return {boost::replace_all_copy(key, "_", " "), "", 1.0};
 }
 
 FieldUnit field_unit(const std::string& si) {
   if (si == "rad/s^2") return {1.0 / kDegreePerHourPerHour, "°/h/h"};
-  if (si.rfind("rad/s", 0) == 0) {
+  if (si.starts_with("rad/s")) {
     const std::string rest = si.substr(5);
     // Errors proportional to the rate are given in ppm.
-    if (rest.rfind("/(rad/s)", 0) == 0 && rest.find('^') == std::string::npos)
+    if (rest.starts_with("/(rad/s)") && rest.find('^') == std::string::npos)
       return {1e6, "ppm" + typeset_unit(rest.substr(8))};
     return {1.0 / kDegreePerHour, "°/h" + typeset_unit(rest)};
   }
@@ -215,7 +213,7 @@ std::vector<std::string> in_reading_order(const std::map<std::string, double>& f
   std::vector<std::string> keys;
   keys.reserve(figures.size());
   for (const auto& [key, value] : figures) keys.push_back(key);
-  std::stable_sort(keys.begin(), keys.end(), [](const std::string& a, const std::string& b) {
+  std::ranges::stable_sort(keys, [](const std::string& a, const std::string& b) {
     return family(a) != family(b) ? family(a) < family(b) : averaging_time(a) < averaging_time(b);
   });
   return keys;
@@ -271,7 +269,7 @@ std::string account_of_rest(const Diagnosis& d) {
   const Unexplained& u = d.unexplained;
   if (u.kind.empty() || u.kind == "nothing") return "Nothing more is found in what remains.";
   std::string kind = u.kind;
-  std::replace(kind.begin(), kind.end(), '_', ' ');
+  std::ranges::replace(kind, '_', ' ');
   return "Something remains unexplained: <strong>" + escaped(kind) + "</strong>, " +
          (u.fraction < 1e-3 ? "under 0.1" : number(100.0 * u.fraction, 2)) +
          " % of the variance that is neither white noise nor explained." +

@@ -22,6 +22,9 @@ std::string effect_words(const Effect& effect);        // "quadratic in temperat
 // only changes the phase.
 std::vector<ModelParameter> shown_parameters(const FoundEffect& found);
 
+// "time constant" for "time_constant_s": without the unit, which has its own place.
+std::string parameter_words(std::string name);
+
 // A figure in `before` and `after`: its label and its value in the field's unit, from the key's suffix.
 struct Figure {
   std::string label, unit;

@@ -108,7 +108,7 @@ DriverInstance FlightInput::made() const {
     std::vector<Fd>
         carried;  // in memory: some file systems do not open an unlinked file by its descriptor's name
     for (const auto& [key, value] : header().options) {
-      const bool names_file = std::find(files.begin(), files.end(), key) != files.end();
+      const bool names_file = std::ranges::find(files, key) != files.end();
       const auto found = header().files.find(value);
       if (settings.contains(key)) continue;
       if (names_file && found == header().files.end() && !own.contains(key))

@@ -23,8 +23,7 @@ bool good_name(const std::string& name) {
   std::string axis;
   return !name.empty() && name != "time_s" && !axis_of(name, "rate", axis) &&
          !axis_of(name, "reference_rate", axis) && name.find('_') != std::string::npos &&
-         std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+         std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/lcm/lcm_listener.h"
 
-#include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <utility>
 
 #include "daemon/config/lcm_url.h"
@@ -38,9 +37,7 @@ void LcmListener::listen_to(const std::string& pattern) {
 }
 
 void LcmListener::listen_to_sensor(const std::string& name) {
-  std::string upper = name;
-  std::transform(upper.begin(), upper.end(), upper.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const std::string upper = boost::to_upper_copy(name);
   listen_to(upper.empty() ? "IFOG_.*" : "IFOG_" + upper + "(_STATUS|_IMU)?");
 }
 

@@ -173,11 +173,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
     warn("{}: {}; {}\n", path, damaged.first,
          damaged.count == 1 ? "it is dropped" : std::to_string(damaged.count) + " such messages are dropped");
   order.flush(hand_on);
-  if (way.had_two_publishers())
-    warn(
-        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages are "
-        "mixed\n",
-        path, printable(wanted));
+  if (way.had_two_publishers()) warn("{}: {}\n", path, two_publishers_sent_on(printable(wanted)));
   if (axes == 0) throw refusal("{}: has no message on channel {}", path, wanted);
   if (way.lost() > 0)
     warn("{}: {} samples on {} are missing by their counts ({} lost them)\n", path, way.lost(),

@@ -7,11 +7,18 @@
 #include <cstdint>
 #include <ifog/rate_t.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "drivers/timeline/two_devices.h"
 
 namespace ifog::tools {
+
+// For a warning.
+inline std::string two_publishers_sent_on(const std::string& channels) {
+  return "two publishers sent on " + channels +
+         " (two daemons, or a log played at the same time): their messages are mixed";
+}
 
 class LcmLoss {
  public:

@@ -159,7 +159,7 @@ bool PeerReader::again(const PeerSample& sample) {
 bool PeerReader::unpack(std::span<const std::uint8_t> message) {
   samples_.clear();
   if (!type_->unpack(message, samples_)) return false;
-  return std::all_of(samples_.begin(), samples_.end(), [](const PeerSample& sample) {
+  return std::ranges::all_of(samples_, [](const PeerSample& sample) {
     return can_be(sample.utime, kMostNumber / 1000) && can_be(sample.count, kMostNumber) &&
            can_be(sample.device_ns, kMostNumber);
   });
@@ -252,7 +252,7 @@ const PeerType* peer_type(Bytes message) {
   }};
   const std::int64_t hash = type_hash(message);
   const auto* const found =
-      std::find_if(types.begin(), types.end(), [hash](const PeerType& type) { return type.hash == hash; });
+      std::ranges::find_if(types, [hash](const PeerType& type) { return type.hash == hash; });
   return found != types.end() ? &*found : nullptr;
 }
 

@@ -65,14 +65,13 @@ std::vector<std::string> LongTable::names() const {
 }
 
 void LongTable::drop_unknown(const std::string& path) {
-  const bool any = std::any_of(columns.begin(), columns.end(), [](const LongColumn& column) {
-    return column.known && column.name.starts_with("rate");
-  });
+  const bool any = std::ranges::any_of(
+      columns, [](const LongColumn& column) { return column.known && column.name.starts_with("rate"); });
   if (!any) throw refusal("{}: the device marks every value of every axis invalid", path);
   drop_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
-    return std::any_of(columns.begin(), columns.end(),
-                       [&](const LongColumn& column) { return column.name == name && !column.known; });
+    return std::ranges::any_of(
+        columns, [&](const LongColumn& column) { return column.name == name && !column.known; });
   });
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
 }
@@ -97,7 +96,7 @@ std::vector<std::string> LongTable::drop_dead_axes() {
   std::string axis;
   const auto of_dead_axis = [&](const std::string& name) {
     return (axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis)) &&
-           std::find(dead.begin(), dead.end(), axis) != dead.end();
+           std::ranges::find(dead, axis) != dead.end();
   };
   for (const LongColumn& column : columns)
     if (!column.known && axis_of(column.name, "rate", axis)) dead.push_back(axis);
@@ -133,8 +132,7 @@ void LongTableSink::take(RowBlock& rows) {
     LongColumn& column = table_.columns[c];
     const std::vector<double>& values = rows.columns[from_[c]];
     column.values.append(values);
-    column.known =
-        column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
+    column.known = column.known || std::ranges::any_of(values, [](double v) { return !std::isnan(v); });
   });
 }
 
@@ -165,9 +163,7 @@ LongTable long_table(Capture capture) {
 }
 
 void LongTable::keep_rate_rows(const std::string& path) {
-  if (std::none_of(columns.begin(), columns.end(),
-                   [](const LongColumn& column) { return is_rate(column.name); }))
-    return;
+  if (std::ranges::none_of(columns, [](const LongColumn& column) { return is_rate(column.name); })) return;
   const std::vector<bool> with = rows_with_rate(*this);
   if (!stand_apart(with)) return;
   const std::size_t before = size();

@@ -3,11 +3,15 @@
 // headers contain the whole parser.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -34,7 +38,17 @@ struct ValueRange {
 ValueRange positive();
 ValueRange not_negative();
 ValueRange within(double least, double most);
-ValueRange within(int least, int most);
+
+// Endings of the names of files of one format.
+inline constexpr auto kJsonEndings = std::to_array<std::string_view>({".json", ".jsonl", ".ndjson"});
+inline constexpr auto kModelEndings = std::to_array<std::string_view>({".toml"});
+inline constexpr auto kPageEndings = std::to_array<std::string_view>({".html", ".htm"});
+inline constexpr auto kFrameEndings = std::to_array<std::string_view>({".log", ".candump", ".txt"});
+inline constexpr auto kByteEndings =
+    std::to_array<std::string_view>({".bin", ".kvh", ".raw", ".dat", ".txt"});
+
+// An option or argument that names files: they are registered before the command runs (command_files.h).
+enum class FileUse { none, read, written };
 
 // What an option allows besides the type of its variable, and how the help shows it.
 struct OptionRule {
@@ -47,12 +61,17 @@ struct OptionRule {
   ValueRange range{};
   std::vector<std::string> choices{};  // shown as a|b instead of a value's name
   Complaint check{};                   // before the others, because its message is more specific
+  FileUse file = FileUse::none;
+  std::span<const std::string_view> endings{};  // of a written file of one format; empty: any
 };
+
+inline const OptionRule kReadsFile{.file = FileUse::read};
+inline const OptionRule kWritesJson{.file = FileUse::written, .endings = kJsonEndings};
 
 // Handle of a command, or of the program with its commands.
 class Command {
  public:
-  explicit Command(CLI::App& command) : command_(&command) {}
+  explicit Command(CLI::App& command) : command_(&command), files_(std::make_shared<Files>()) {}
 
   [[nodiscard]] Command add_subcommand(const std::string& name, const std::string& help) const;
 
@@ -71,11 +90,20 @@ class Command {
 
   // Text after the options in the help, e.g. examples.
   void footer(const std::string& text) const;
+  // Registers further files that the command reads.
+  void before_run(std::function<void()> registers) const;
   // The action; may throw WrongUsage, Failed or other errors.
   void callback(std::function<void()> run) const;
 
  private:
+  struct Files {
+    std::vector<std::function<void()>> read, written;  // register them
+  };
+  template <typename T>
+  void name_files(const std::string& names, const T& value, const OptionRule& rule) const;
+
   CLI::App* command_;
+  std::shared_ptr<Files> files_;
 };
 
 }  // namespace ifog::tools

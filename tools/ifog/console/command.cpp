@@ -1,36 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/command.h"
+
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
+#include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 
 #include "drivers/ifog/decimal.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/command_files.h"
 
 namespace ifog::tools {
 
 namespace {
-
-// Options whose values are not files. The value's name is the same in every command.
-constexpr std::array<std::pair<std::string_view, const char*>, 9> kTexts = {{{"--axis", "NAME"},
-                                                                             {"--channel", "NAME"},
-                                                                             {"--filter", "NAME"},
-                                                                             {"--sensor", "NAME"},
-                                                                             {"--state", "NAME"},
-                                                                             {"--weights", "NAME"},
-                                                                             {"--to", "WHERE"},
-                                                                             {"NAME", "NAME"},
-                                                                             {"sensor", "NAME"}}};
 
 // Parses the whole text as a T; a leading plus sign is allowed.
 template <typename T>
@@ -95,15 +86,6 @@ struct ValueOf<std::optional<T>> : ValueOf<T> {};
 template <typename T>
 struct ValueOf<std::vector<T>> : ValueOf<T> {};
 
-// The value's name in the help, if the rule has none.
-std::string type_of(const CLI::Option& option, ValueKind kind) {
-  if (kind != ValueKind::text) return kind == ValueKind::number ? "NUMBER" : "N";
-  const std::string name = option.get_name(option.get_positional());
-  const auto text =
-      std::ranges::find(kTexts, std::string_view(name), [](const auto& each) { return each.first; });
-  return text != kTexts.end() ? text->second : "FILE";
-}
-
 template <typename T>
 void follow(const OptionRule& rule, CLI::Option* option) {
   using Value = typename ValueOf<T>::type;
@@ -111,9 +93,12 @@ void follow(const OptionRule& rule, CLI::Option* option) {
                          : std::is_floating_point_v<Value>  ? ValueKind::number
                          : std::is_signed_v<Value>          ? ValueKind::whole
                                                             : ValueKind::count;
-  std::string choices;
-  for (const std::string& word : rule.choices) choices += (choices.empty() ? "" : "|") + word;
-  option->type_name(!choices.empty() ? choices : rule.type.empty() ? type_of(*option, kind) : rule.type);
+  const std::string choices = boost::join(rule.choices, "|");
+  const char* const usual = kind == ValueKind::number    ? "NUMBER"
+                            : kind != ValueKind::text    ? "N"
+                            : rule.file != FileUse::none ? "FILE"
+                                                         : "NAME";
+  option->type_name(!choices.empty() ? choices : rule.type.empty() ? usual : rule.type);
   option->check([rule, kind, option](const std::string& value) {
     return complaint(rule, kind, value, option->get_type_name());
   });
@@ -125,13 +110,11 @@ void follow(const OptionRule& rule, CLI::Option* option) {
   if (rule.delimiter != '\0') option->delimiter(rule.delimiter);
 }
 
+// "1e9", "0.5".
 std::string in_digits(double value) {
-  std::ostringstream out;
-  out << value;
-  std::string text = out.str();
+  std::string text = fmt::format("{:g}", value);
   for (const auto& [from, to] : {std::pair{"e+0", "e"}, {"e-0", "e-"}, {"e+", "e"}})
-    if (const std::size_t at = text.find(from); at != std::string::npos)
-      text.replace(at, std::string_view(from).size(), to);
+    boost::replace_all(text, from, to);
   return text;
 }
 
@@ -145,19 +128,27 @@ ValueRange within(double least, double most) {
   return {least, most, false, in_digits(least) + " to " + in_digits(most)};
 }
 
-ValueRange within(int least, int most) {
-  return {static_cast<double>(least), static_cast<double>(most), false,
-          std::to_string(least) + " to " + std::to_string(most)};
-}
-
 Command Command::add_subcommand(const std::string& name, const std::string& help) const {
   return Command(*command_->add_subcommand(name, help));
+}
+
+template <typename T>
+void Command::name_files(const std::string& names, const T& value, const OptionRule& rule) const {
+  const auto name_in = [option = names.substr(names.rfind(',') + 1), rule](const std::string& path) {
+    rule.file == FileUse::read ? will_read(option, path) : will_write(option, path, rule.endings);
+  };
+  auto& files = rule.file == FileUse::read ? files_->read : files_->written;
+  if (rule.file == FileUse::none) return;
+  if constexpr (std::is_same_v<T, std::string>) files.emplace_back([name_in, &value] { name_in(value); });
+  if constexpr (std::is_same_v<T, std::vector<std::string>>)
+    files.emplace_back([name_in, &value] { std::ranges::for_each(value, name_in); });
 }
 
 template <typename T>
 void Command::add_option(const std::string& names, T& value, const std::string& help,
                          const OptionRule& rule) const {
   follow<T>(rule, command_->add_option(names, value, help));
+  name_files(names, value, rule);
 }
 
 template <typename T>
@@ -177,7 +168,17 @@ void Command::add_flag_taken(const std::string& names, std::function<void()> tak
 
 void Command::footer(const std::string& text) const { command_->footer(text); }
 
-void Command::callback(std::function<void()> run) const { command_->callback(std::move(run)); }
+void Command::before_run(std::function<void()> registers) const {
+  files_->read.push_back(std::move(registers));
+}
+
+void Command::callback(std::function<void()> run) const {
+  command_->callback([files = files_, run = std::move(run)] {
+    for (const auto& list : {files->read, files->written})
+      for (const auto& registers : list) registers();
+    run();
+  });
+}
 
 // Types that commands use.
 using Text = const std::string&;
