@@ -253,6 +253,7 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (!pipeline.reader().transport().holds_back())
     tell(sensor, spdlog::level::warn, sensor.report.wrong_rate());
   tell(sensor, spdlog::level::info, sensor.report.unseen_axes());
+  tell(sensor, spdlog::level::warn, sensor.report.unknown_noise());
   tell(sensor, spdlog::level::warn, sensor.report.newly_frozen());
   tell(sensor, spdlog::level::warn, sensor.report.newly_noticed());
   publish(sensor);

@@ -15,7 +15,8 @@
 namespace ifog {
 namespace {
 
-constexpr int kInVain = 5;  // seconds of input without a frame before a warning
+constexpr int kPatience = 60;  // seconds with samples until the noise should be known
+constexpr int kInVain = 5;     // seconds of input without a frame before a warning
 
 // Time without data after which an open device counts as silent.
 double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
@@ -235,6 +236,15 @@ std::string StatusReport::unseen_axes() const {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (((samples_.axes_seen >> i) & 1U) == 0) out += (out.empty() ? "" : ", ") + axes_[i];
   return out.empty() ? "" : "no value of axis " + out + " so far: does the device have it?";
+}
+
+std::string StatusReport::unknown_noise() const {
+  const bool known = std::ranges::any_of(now_.measurement_noise, [](double noise) { return noise > 0.0; });
+  if (known || !samples_.news || samples_.seconds != kPatience) return "";
+  return "the noise is not known after a minute, so the rate is published as compensated: that takes rests "
+         "of "
+         "512 samples, 4096 in all; if the sensor never rests, give the model of 'ifog tune' for a recording "
+         "at rest";
 }
 
 std::string StatusReport::newly_frozen() const {

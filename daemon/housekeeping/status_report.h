@@ -65,6 +65,9 @@ class StatusReport {
   // Once, some seconds after the first sample, if an axis never had a value; else "".
   [[nodiscard]] std::string unseen_axes() const;
 
+  // Once, after a minute of samples, if the noise has not been learned: what to do; else "".
+  [[nodiscard]] std::string unknown_noise() const;
+
   // Once, if a device repeats itself; else "".
   [[nodiscard]] std::string newly_frozen() const;
 

@@ -87,9 +87,10 @@ int Walk::against_others() const noexcept {
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     for (std::size_t k = 0; k < kOctaves; ++k) {
       const double mine = piece_[a].counts[k], others = lately_[a].counts[k];
-      if (mine < kFewest || others < kFewest) continue;
-      const double off = logarithm(std::max(piece_[a].sums[k] / mine, 1e-300)) -
-                         logarithm(std::max(lately_[a].sums[k] / others, 1e-300));
+      // A coarse converter may show no noise for a while.
+      const double times = piece_[a].sums[k] / mine / (lately_[a].sums[k] / others);
+      if (mine < kFewest || others < kFewest || !(times > 0.0) || !std::isfinite(times)) continue;
+      const double off = logarithm(times);
       if (off * off <= kOtherPiece * kOtherPiece * (2.0 / mine + 2.0 / others)) continue;
       if (off > 0.0) return 1;
       found = -1;

@@ -56,6 +56,27 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
   }
 }
 
+// A vehicle that does not stop: what is published is not denoised, and that is said once, after a minute.
+TEST(PipelineStatus, NoiseThatIsNotLearnedIsTold) {
+  for (const double noise : {0.0, 1e-8}) {
+    Rig rig(frames(50), kFrame, true);
+    rig.transport->stays_open_ = true;
+    rig.pipeline->start();
+    while (rig.pipeline->reader().books().line.bytes < 50 * kFrame) std::this_thread::sleep_for(1ms);
+    std::vector<int> told;
+    for (int second = 1; second < 200; ++second) {
+      FilterSnapshot snapshot;
+      snapshot.reader = rig.pipeline->reader().books();
+      snapshot.reader.counts.samples += 100 * static_cast<std::uint64_t>(second);
+      snapshot.health.measurement_noise[0] = noise;
+      (void)rig.status(snapshot);
+      if (test::has(rig.report->unknown_noise(), "ifog tune")) told.push_back(second);
+    }
+    EXPECT_EQ(told, noise > 0.0 ? std::vector<int>{} : std::vector<int>{60});
+    rig.pipeline->stop();
+  }
+}
+
 // Two devices on one line: in the books, in the state and in words; and what is published is not their sum.
 TEST(PipelineStatus, FramesOfTwoDevicesAreNotTakenAndToldInWords) {
   constexpr std::size_t kCount = 4000, kApart = 40;
