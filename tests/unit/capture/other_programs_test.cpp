@@ -120,6 +120,18 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // Analog Devices, ADIS16495 data logger: registers.
       {rows_of("Timestamp,X_GYRO_OUT\n", "0.{i},{count}"),
        {"whole numbers are often counts", "--column rate_x_radps=X_GYRO_OUT:0.005deg/s"}},
+      // Axes counted from 1, as in MATLAB and R, or from 0; four numbers are sensors.
+      {rows_of("time_s,gyro1_dps,gyro2_dps,gyro3_dps,acc_1_g\n", "0.{i},{x},{y},{z},1"),
+       {"rate_x 'gyro1_dps' in dps, rate_y 'gyro2_dps' in dps, rate_z 'gyro3_dps' in dps, acc_1"}},
+      {rows_of("t (s),gyro[1] (rad/s),gyro[2] (rad/s),gyro[3] (rad/s)\n", "0.{i},{x},{y},{z}"),
+       {"rate_x 'gyro[1] (rad/s)' in rad/s, rate_y 'gyro[2] (rad/s)' in rad/s, rate_z 'gyro[3] (rad/s)'"}},
+      {rows_of("t,g1,g2,g3\n", "0.{i},{x},{y},{z}"),
+       {"--column rate_x_radps=g1:rad/s --column rate_y_radps=g2:rad/s --column rate_z_radps=g3:rad/s"}},
+      {rows_of("t_s,rate1_dps,rate2_dps\n", "0.{i},{x},{y}"), {"rate_x 'rate1_dps' in dps, rate_y 'rate2_dps'"}},
+      {rows_of("t_s,w0_dps,w1_dps\n", "0.{i},{x},{y}"), {"rate_x 'w0_dps' in dps, rate_y 'w1_dps'"}},
+      {rows_of("t_s,gyro1_dps,gyro2_dps,gyro3_dps,gyro4_dps\n", "0.{i},{x},{y},{z},{x}"),
+       {"more than one column may be the rate; to read it: --time t_s:s --column rate_radps=gyro1_dps:dps; or: "
+        "--time t_s:s --column rate_radps=gyro2_dps:dps; or: "}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
       // A laboratory's logger: three temperatures below one name, and names of sensors that are switched off.
