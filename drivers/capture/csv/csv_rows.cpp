@@ -80,7 +80,7 @@ class CsvRows {
     Lines lines(text);
     for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
     so_far_.lines = has_lines_ ? lines.number() : 0;
-    for (const std::string& comment : header_.sample.comments) notes_.comments += comment + '\n';
+    for (const std::string& comment : header_.sample.comments) keep_comments(comment + '\n');
     notes_.header_line = so_far_.lines;
     for (const std::string& notice : header_.notices) notes_.notice(0, notice);
     impossible_.resize(header_.columns.size());
@@ -127,7 +127,7 @@ class CsvRows {
     piece.parsed.get();
     if (piece.too_long.count > 0)
       refuse_long_line(path_, so_far_.lines + piece.too_long.line, piece.too_long.first);
-    notes_.comments += piece.comments;
+    keep_comments(piece.comments);
     for (std::size_t c = 0; c < impossible_.size(); ++c)
       impossible_[c].append(piece.impossible[c], so_far_.lines);
     damaged_.append(piece.damaged, so_far_.lines);
@@ -146,6 +146,13 @@ class CsvRows {
       for (double& time : rows.time_s)
         time = (static_cast<double>(places) + time) / *header_.layout.sample_rate_hz;
     checks_->take(rows);
+  }
+
+  void keep_comments(std::string_view comments) {
+    const std::string_view kept = comments.substr(0, kMostComments - notes_.comments.size());
+    notes_.comments += kept.substr(0, kept.rfind('\n') + 1);
+    if (kept.size() < comments.size() && !std::exchange(so_far_.too_many_comments, true))
+      notes_.notice(0, "of the comments the first " + std::to_string(kMostComments) + " bytes are kept");
   }
 
   // An incomplete last line is reported separately.
@@ -173,6 +180,7 @@ class CsvRows {
   Fault damaged_, unended_;
   struct Counts {
     std::size_t lines = 0, untimed = 0, places = 0;
+    bool too_many_comments = false;
   } so_far_;
   std::optional<TimeStamps> stamps_;  // set by the first row
 };

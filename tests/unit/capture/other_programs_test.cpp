@@ -127,10 +127,12 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"rate_x 'gyro[1] (rad/s)' in rad/s, rate_y 'gyro[2] (rad/s)' in rad/s, rate_z 'gyro[3] (rad/s)'"}},
       {rows_of("t,g1,g2,g3\n", "0.{i},{x},{y},{z}"),
        {"--column rate_x_radps=g1:rad/s --column rate_y_radps=g2:rad/s --column rate_z_radps=g3:rad/s"}},
-      {rows_of("t_s,rate1_dps,rate2_dps\n", "0.{i},{x},{y}"), {"rate_x 'rate1_dps' in dps, rate_y 'rate2_dps'"}},
+      {rows_of("t_s,rate1_dps,rate2_dps\n", "0.{i},{x},{y}"),
+       {"rate_x 'rate1_dps' in dps, rate_y 'rate2_dps'"}},
       {rows_of("t_s,w0_dps,w1_dps\n", "0.{i},{x},{y}"), {"rate_x 'w0_dps' in dps, rate_y 'w1_dps'"}},
       {rows_of("t_s,gyro1_dps,gyro2_dps,gyro3_dps,gyro4_dps\n", "0.{i},{x},{y},{z},{x}"),
-       {"more than one column may be the rate; to read it: --time t_s:s --column rate_radps=gyro1_dps:dps; or: "
+       {"more than one column may be the rate; to read it: --time t_s:s --column rate_radps=gyro1_dps:dps; "
+        "or: "
         "--time t_s:s --column rate_radps=gyro2_dps:dps; or: "}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
