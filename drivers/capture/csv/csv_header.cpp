@@ -176,6 +176,11 @@ class Chooser {
       layout.time.reset();
     else
       take_time(*layout.time);
+    if (const auto interval = interval_of(header_.sample, layout)) {
+      header_.notices.push_back("each increment is of its own interval: " +
+                                option_for(*interval, interval->unit));
+      layout.columns.push_back(*interval);
+    }
     if (layout.other_rates && !named_)
       for (const CsvColumn& other : rates_not_chosen(header_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {

@@ -99,6 +99,31 @@ TEST(CsvLayout, AnAngleIsDividedByTheTimeThatItTook) {
   }
 }
 
+// vehicle_imu of PX4, thinned out to 2 Hz, and loggers that name the unit, or none: 1 mrad in 4 ms each. An interval that
+// is longer than the rows are apart is of something else.
+TEST(CsvLayout, AnIncrementIsOfTheIntervalInItsRow) {
+  for (const auto& [header, interval, chosen, rate] :
+       std::initializer_list<std::tuple<const char*, const char*, CsvLayout, double>>{
+           {"timestamp,delta_angle[0],delta_velocity_dt,delta_angle_dt", "8000,4000", {}, 0.25},
+           {"timestamp_us,dtheta_x_rad,n,dt_s", "1,0.004", {}, 0.25},
+           {"t,DelAX,DelvT,DelaT", "0.008,0.004", layout({"rate_x_radps=DelAX:rad/sample"}, "t:us"), 0.25},
+           {"t,a,b,dt", "1,4000", layout({"rate_x_radps=#2:rad/sample", "interval_s=dt:us"}, "t:us"), 0.25},
+           {"timestamp_us,dtheta_x_rad,n,dt_s", "1,4", {}, 0.002}}) {
+    std::string text = std::string(header) + "\n";
+    for (std::int64_t i = 0; i < 42; ++i)
+      text += std::to_string(1'710'773'350'710'000 + 500'000 * i) + ",0.001," +
+              (i < 40    ? interval
+               : i == 40 ? "1,"
+                         : "1,0") +
+              "\n";
+    const Capture got = parse_capture(text, "a.csv", chosen);
+    const std::string said = got.notices.empty() ? "" : got.notices[0];
+    EXPECT_NEAR(got.rate_radps.at(0).at(7), rate, 1e-9 * rate) << header << said;
+    EXPECT_EQ(test::has(said, "interval"), rate == 0.25 && chosen.columns.size() < 2) << said;
+    EXPECT_EQ(std::isnan(got.rate_radps[0][40]) && std::isnan(got.rate_radps[0][41]), rate == 0.25);
+  }
+}
+
 TEST(CsvLayout, IncrementsAreTheTurnWithinAPeriod) {
   // 0.36 arcsec in 10 ms are 36 arcsec/s: behind a hole as well, and in a row that came late.
   const Capture got =
