@@ -172,10 +172,16 @@ class Chooser {
     } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
       take_reading();
     }
-    if (layout.sample_rate_hz)
+    if (layout.sample_rate_hz) {
       layout.time.reset();
-    else
+      // Where a counter of the rows jumps, rows are missing.
+      const auto& columns = header_.sample.columns;
+      const auto count = std::ranges::find_if(
+          columns, [](const TableColumn& column) { return column.counts_rows() && !time_unit(column.unit); });
+      if (count != columns.end()) header_.time_place = static_cast<std::size_t>(count - columns.begin());
+    } else {
       take_time(*layout.time);
+    }
     if (const auto interval = interval_of(header_.sample, layout)) {
       header_.notices.push_back("each increment is of its own interval: " +
                                 option_for(*interval, interval->unit));

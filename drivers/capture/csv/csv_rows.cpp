@@ -48,6 +48,9 @@ class CsvRows {
       notes_.notice(0, std::to_string(so_far_.untimed) + " rows without " +
                            in_quotes(header_.cells[header_.time_place]) +
                            " are of another sensor and dropped");
+    if (so_far_.missing > 0)
+      notes_.notice(0, "of the rows that " + in_quotes(header_.cells[header_.time_place]) + " counts " +
+                           std::to_string(so_far_.missing) + " are missing: gaps in time");
     checks_->finish(impossible_);
     return std::move(notes_);
   }
@@ -142,10 +145,30 @@ class CsvRows {
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
     if (rows.size() == 0) return;
-    if (header_.layout.sample_rate_hz)
-      for (double& time : rows.time_s)
-        time = (static_cast<double>(places) + time) / *header_.layout.sample_rate_hz;
+    if (header_.layout.sample_rate_hz) {
+      if (header_.time_place != CsvHeader::kNone)
+        places_by_counter(rows);
+      else
+        for (double& time : rows.time_s) time += static_cast<double>(places);
+      for (double& time : rows.time_s) time /= *header_.layout.sample_rate_hz;
+    }
     checks_->take(rows);
+  }
+
+  // Counts are times until here. One that does not increase rolled over, was repeated, or is a fault, as one that the next
+  // row contradicts.
+  void places_by_counter(RowBlock& rows) {
+    rows.origin = {};
+    if (so_far_.place < 0.0) so_far_.count = rows.time_s[0] - 1.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double count = rows.time_s[i], step = count - so_far_.count;
+      const double next = i + 1 < rows.size() ? rows.time_s[i + 1] : -1.0;
+      const bool fault = next > so_far_.count && (count >= next || step <= 0.0);
+      const bool jumps = step > 1.0 && !fault;
+      so_far_.missing += jumps ? static_cast<std::size_t>(step) - 1 : 0;
+      so_far_.count = fault ? so_far_.count + 1.0 : count;
+      rows.time_s[i] = so_far_.place += jumps ? step : 1.0;
+    }
   }
 
   void keep_comments(std::string_view comments) {
@@ -181,6 +204,8 @@ class CsvRows {
   struct Counts {
     std::size_t lines = 0, untimed = 0, places = 0;
     bool too_many_comments = false;
+    double count = 0.0, place = -1.0;  // of the last row, if a counter says where rows are missing
+    std::size_t missing = 0;
   } so_far_;
   std::optional<TimeStamps> stamps_;  // set by the first row
 };

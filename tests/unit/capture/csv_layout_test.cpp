@@ -99,6 +99,28 @@ TEST(CsvLayout, AnAngleIsDividedByTheTimeThatItTook) {
   }
 }
 
+// Xsens MT export: 500 packets are lost, later two. The counter is of 16 bits, and a damaged line and a wrong count cost
+// no time.
+TEST(CsvLayout, AJumpOfTheCounterOfRowsIsAGap) {
+  CsvLayout rate;
+  rate.sample_rate_hz = 100;
+  rate.columns = {CsvColumn::parse("rate_x_radps=Gyr_X:rad/s")};
+  std::string text = "PacketCounter,Gyr_X\n";
+  for (int i = 0; i < 2000; ++i)
+    if (i < 1000 || (i >= 1500 && i != 1700 && i != 1701))
+      text += std::to_string(i == 300 ? 9999 : (64000 + i) % 65536) + (i == 200 ? ",??\n" : ",0.1\n");
+  const Capture got = parse_capture(text, "a.csv", rate);
+  ASSERT_EQ(got.size(), 1497U);
+  EXPECT_EQ(got.origin.s, 0);
+  std::size_t row = 0;
+  for (int i = 0; i < 2000; ++i)
+    if (i != 200 && (i < 1000 || (i >= 1500 && i != 1700 && i != 1701))) {
+      ASSERT_NEAR(got.time_s[row++], 0.01 * i, 1e-9) << i;
+    }
+  EXPECT_EQ(got.notices, std::vector<std::string>{
+                             "a.csv: of the rows that 'PacketCounter' counts 503 are missing: gaps in time"});
+}
+
 // vehicle_imu of PX4, thinned out to 2 Hz, and loggers that name the unit, or none: 1 mrad in 4 ms each. An interval that
 // is longer than the rows are apart is of something else.
 TEST(CsvLayout, AnIncrementIsOfTheIntervalInItsRow) {
