@@ -134,6 +134,10 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"more than one column may be the rate; to read it: --time t_s:s --column rate_radps=gyro1_dps:dps; "
         "or: "
         "--time t_s:s --column rate_radps=gyro2_dps:dps; or: "}},
+      // KITTI's oxts begins with a latitude, and a filter's output with a number of the row: none is a time in days.
+      {rows_of("", "49.00000{i} 8.4 {x} {y} {z}"), {"no time column; to read it: --sample-rate HZ"}},
+      {rows_of("", "{i} -0.00001{i} {x} {y}"),
+       {"no time column, '#1' counts the rows; to read it: --sample-rate"}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
       // A laboratory's logger: three temperatures below one name, and names of sensors that are switched off.
