@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "drivers/transport/network/ip_address.h"
+#include "drivers/transport/network/ip_socket.h"
 
 namespace ifog {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "daemon/config/lcm_field_name.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/network/ip_address.h"
+#include "drivers/transport/network/ip_socket.h"
 #include "msgs/channel_name.h"
 
 namespace ifog {

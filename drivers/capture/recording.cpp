@@ -43,31 +43,12 @@ FileKind begun_as(std::string_view head) {
                                                                                           : FileKind::unknown;
 }
 
-// True if a line near the beginning is a frame; the first line may be incomplete.
-bool has_candump_frame(std::string_view head) {
-  return !first_interface(head, [](const ifog_can_frame&) { return true; }).empty();
-}
-
 // Text has no control characters except line ends, tabs and terminal colours.
 bool is_text(std::string_view head) {
   return std::ranges::all_of(head, [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return (byte >= 0x20 && byte != 0x7F) || (byte >= '\t' && byte <= '\r') || byte == 0x1B;
   });
-}
-
-// Two devices with one id would be mistaken for one.
-void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
-                       std::string_view interface, const std::string& path) {
-  if (!wants(driver.description(), frame)) return;
-  if (const std::string_view other = buses.other(frame, interface); !other.empty())
-    throw std::runtime_error(two_interfaces(path, other, std::string(interface)));
-}
-
-// Ambiguous endings.
-bool says_nothing(std::string_view path) {
-  const std::string_view name = unpacked_name(path);
-  return has_ending(name, ".txt") || has_ending(name, ".dat");
 }
 
 }  // namespace
@@ -100,9 +81,12 @@ FileKind file_kind(const std::string& path) {
 
 FileKind file_kind(const InputFile& file) {
   if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
-  FileKind by_name = says_nothing(file.path()) ? FileKind::unknown : file_kind(file.path());
-  // Many programs use this ending.
-  if (by_name == FileKind::candump && !file.head().empty() && !has_candump_frame(file.head()))
+  const std::string_view name = unpacked_name(file.path());
+  const bool says_nothing = has_ending(name, ".txt") || has_ending(name, ".dat");
+  FileKind by_name = says_nothing ? FileKind::unknown : file_kind(file.path());
+  // Many programs use this ending: a line near the beginning is a frame, though the first may be incomplete.
+  const auto any = [](const ifog_can_frame&) { return true; };
+  if (by_name == FileKind::candump && !file.head().empty() && first_interface(file.head(), any).empty())
     by_name = FileKind::unknown;
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
@@ -131,7 +115,10 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     CandumpBuses buses;
     counts.candump =
         for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
-          expect_one_device(buses, driver, frame, from, file.path());
+          // Two devices with one id would be mistaken for one.
+          if (wants(driver.description(), frame))
+            if (const std::string_view other = buses.other(frame, from); !other.empty())
+              throw std::runtime_error(two_interfaces(file.path(), other, from));
           driver.decode_can(frame, take);
         });
   } else {

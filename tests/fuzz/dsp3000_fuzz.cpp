@@ -17,6 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!again || again->micro_degrees != reading.micro_degrees || again->valid != reading.valid)
       std::abort();
   });
-  if (read != finder.counters().good || finder.counters().bytes_skipped > size) std::abort();
+  if (read != finder.counters().frames_good || finder.counters().bytes_skipped > size) std::abort();
   return 0;
 }

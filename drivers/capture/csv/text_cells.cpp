@@ -2,10 +2,12 @@
 #include "drivers/capture/csv/text_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/algorithm/string/replace.hpp>
 #include <system_error>
 #include <utility>
 
+#include "drivers/capture/columns/column.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"

@@ -117,15 +117,7 @@ class Driver {
     forget();
   }
 
-  void counters(ifog_driver_counters& out) const {
-    const Counters& c = rows_.counters();
-    out = {};
-    out.frames_good = c.good;
-    out.frames_format = c.format;
-    out.bytes_skipped = c.skipped;
-    out.bytes_framed = c.framed;
-    out.bytes_pending = rows_.waiting();
-  }
+  void counters(ifog_driver_counters& out) const { out = rows_.counters(); }
 
  private:
   void forget() noexcept {

@@ -62,7 +62,7 @@ Rows::Rows(std::vector<std::string> wanted)
     : wanted_(std::move(wanted)), values_(wanted_.size()), line_(kLongestLine) {}
 
 void Rows::restart() noexcept {
-  counters_.skipped += length_ + overlong_;
+  counters_.bytes_skipped += length_ + overlong_;
   length_ = overlong_ = 0;
   columns_ = 0;
   timed_ = false;
@@ -75,12 +75,12 @@ bool Rows::end_line() noexcept {
   const bool remark = beyond == 0 && (line.empty() || line.front() == '#');
   const bool row = columns_ > 0;
   if (remark || (beyond == 0 && (row ? read_row(line) : read_header(line)))) {
-    counters_.framed += bytes;
-    counters_.good += row && !remark ? 1 : 0;
+    counters_.bytes_framed += bytes;
+    counters_.frames_good += row && !remark ? 1 : 0;
     return row && !remark;
   }
-  ++counters_.format;
-  counters_.skipped += bytes;
+  ++counters_.frames_format;
+  counters_.bytes_skipped += bytes;
   return false;
 }
 

@@ -11,17 +11,12 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/ifog/driver.h"
+
 namespace ifog::capture_rows {
 
 constexpr std::size_t kMostColumns = 256;    // per capture
 constexpr std::size_t kLongestLine = 16384;  // in bytes
-
-struct Counters {
-  std::uint64_t good = 0;     // rows
-  std::uint64_t format = 0;   // lines that are neither a header with the wanted columns nor a row
-  std::uint64_t framed = 0;   // bytes of other lines
-  std::uint64_t skipped = 0;  // bytes of those, of too long lines, and of an incomplete last line
-};
 
 class Rows {
  public:
@@ -40,10 +35,16 @@ class Rows {
   }
   // Another capture with its own header follows.
   void restart() noexcept;
-  [[nodiscard]] const Counters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t waiting() const { return length_ + overlong_; }  // bytes of an incomplete line
+  // frames_format: lines that are neither a header with the wanted columns nor a row; bytes_skipped: of those, of
+  // too long lines, and of an incomplete last line.
+  [[nodiscard]] ifog_driver_counters counters() const {
+    ifog_driver_counters out = counters_;
+    out.bytes_pending = waiting();
+    return out;
+  }
 
  private:
+  [[nodiscard]] std::size_t waiting() const { return length_ + overlong_; }  // bytes of an incomplete line
   void put(char c) noexcept {
     if (length_ < line_.size())
       line_[length_++] = c;
@@ -64,7 +65,7 @@ class Rows {
   std::size_t columns_ = 0;  // 0: no header yet
   std::int64_t time_ns_ = 0;
   bool timed_ = false;  // time_ns_ is from a previous row
-  Counters counters_;
+  ifog_driver_counters counters_{};
 };
 
 }  // namespace ifog::capture_rows

@@ -16,6 +16,8 @@
 #include <string_view>
 #include <utility>
 
+#include "ifog/driver.h"
+
 namespace ifog::dsp3000 {
 
 struct Reading {
@@ -36,13 +38,6 @@ std::size_t format_line(const Reading& reading, char* out) noexcept;
 // Splits a byte stream into lines.
 class LineFinder {
  public:
-  struct Counters {
-    std::uint64_t good = 0;
-    std::uint64_t malformed = 0;      // lines of another form
-    std::uint64_t bytes_skipped = 0;  // bytes outside valid lines
-    std::uint64_t bytes_framed = 0;   // bytes of valid lines and line ends
-  };
-
   // Calls found(Reading) for each valid line, in order. No allocation. A line ends with any sequence of CR
   // and LF, or with its datagram.
   template <typename Found>
@@ -66,8 +61,12 @@ class LineFinder {
     in_step_ = false;
   }
 
-  [[nodiscard]] const Counters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t waiting() const { return length_; }
+  // frames_format: lines of another form; bytes_framed: of valid lines and line ends.
+  [[nodiscard]] ifog_driver_counters counters() const {
+    ifog_driver_counters out = counters_;
+    out.bytes_pending = length_;
+    return out;
+  }
 
  private:
   std::optional<Reading> take(char c) noexcept {
@@ -93,9 +92,9 @@ class LineFinder {
     const std::optional<Reading> reading = whole ? parse_line(line) : std::nullopt;
     (reading ? counters_.bytes_framed : counters_.bytes_skipped) += line.size() + ending;
     if (reading)
-      ++counters_.good;
+      ++counters_.frames_good;
     else if (whole)  // text before the first line end is no fault
-      ++counters_.malformed;
+      ++counters_.frames_format;
     return reading;
   }
 
@@ -103,7 +102,7 @@ class LineFinder {
   std::size_t length_ = 0;
   bool in_step_ = false;
   bool datagrams_ = false;
-  Counters counters_;
+  ifog_driver_counters counters_{};
 };
 
 }  // namespace ifog::dsp3000

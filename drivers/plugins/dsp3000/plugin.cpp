@@ -78,15 +78,7 @@ class Driver {
 
   void reset() noexcept { finder_.reset(); }
 
-  void counters(ifog_driver_counters& out) const {
-    const LineFinder::Counters& c = finder_.counters();
-    out = {};
-    out.frames_good = c.good;
-    out.frames_format = c.malformed;
-    out.bytes_skipped = c.bytes_skipped;
-    out.bytes_framed = c.bytes_framed;
-    out.bytes_pending = finder_.waiting();
-  }
+  void counters(ifog_driver_counters& out) const { out = finder_.counters(); }
 
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
     Reading reading;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of frames in either byte order: reading and writing, numbers limited to a field, checksums, time stamps,
-// and environment channels, which hold their values between frames; what a device of three axes describes.
+// Fields of frames in either byte order: reading and writing, numbers limited to a field, checksums, time stamps.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <boost/crc.hpp>
 #include <cmath>
@@ -15,21 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ifog/driver.h"
-#include "ifog/options.h"
-
 namespace ifog::framing {
-
-// Of a device with axes x, y and z of one full scale, rad/s, and environment channels of these names.
-inline ifog_description three_axes(double full_scale_radps, std::span<const char* const> channels) {
-  ifog_description out{};
-  for (const char* axis : {"x", "y", "z"}) {
-    out.full_scale[out.axes] = full_scale_radps;
-    plugin::set_name(out.axis[out.axes++], axis);
-  }
-  for (const char* channel : channels) plugin::set_name(out.environment[out.environments++], channel);
-  return out;
-}
 
 // Reads from bytes whose number has been checked.
 template <std::endian kOrder>
@@ -100,23 +83,6 @@ inline float float_of(double value, const std::string& what) {
                                 ", expected what a 32-bit float holds");
   return static_cast<float>(value);
 }
-
-class Channels {
- public:
-  Channels() { held_.fill(std::numeric_limits<double>::quiet_NaN()); }
-  // Sets a new value of this sample; ignored if not finite.
-  void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
-    if (!std::isfinite(value)) return;
-    held_[channel] = value;
-    sample.environment_fresh |= 1U << channel;
-  }
-  void copy_to(ifog_sample& sample) const noexcept {
-    std::copy(held_.begin(), held_.end(), sample.environment);
-  }
-
- private:
-  std::array<double, IFOG_MAX_ENVIRONMENT> held_{};
-};
 
 // Time stamp in ticks.
 class Stamp {

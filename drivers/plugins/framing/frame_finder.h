@@ -23,14 +23,6 @@
 
 namespace ifog::framing {
 
-struct FrameCounters {
-  std::uint64_t intact = 0;
-  // A header with a wrong checksum. Not counted within an intact frame, whose payload may look like a header.
-  std::uint64_t checksum_failed = 0;
-  std::uint64_t bytes_skipped = 0;  // bytes outside intact frames
-  std::uint64_t bytes_framed = 0;   // bytes of intact frames
-};
-
 // Information of a header.
 struct Announced {
   enum class Is { none, unknown_yet, frame };
@@ -69,15 +61,13 @@ class FrameFinder {
 
   // Counters for the host. unused: intact frames that the driver ignores by configuration.
   void copy_to(ifog_driver_counters& out, std::uint64_t unused = 0) const noexcept {
-    out = {};
-    out.frames_good = counters_.intact - unused;
-    out.frames_crc = counters_.checksum_failed;
+    out = counters_;
+    out.frames_good -= unused;
     out.frames_format = unused;
-    out.bytes_skipped = counters_.bytes_skipped;
-    out.bytes_framed = counters_.bytes_framed;
     out.bytes_pending = waiting();
   }
-  [[nodiscard]] const FrameCounters& counters() const { return counters_; }
+  // A wrong checksum is not counted within an intact frame, whose payload may look like a header.
+  [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
   [[nodiscard]] std::size_t waiting() const { return end_ - begin_; }  // bytes that may begin a frame
 
  private:
@@ -129,7 +119,7 @@ class FrameFinder {
   void pass_over(std::size_t upto) noexcept {
     counters_.bytes_skipped += upto - begin_;
     if (!any_failed_) return;
-    for (std::size_t at = begin_; at < upto; ++at) counters_.checksum_failed += sum_failed_.test(at) ? 1 : 0;
+    for (std::size_t at = begin_; at < upto; ++at) counters_.frames_crc += sum_failed_.test(at) ? 1 : 0;
   }
   void fail(std::size_t at) noexcept {
     failed_.set(at);
@@ -180,7 +170,7 @@ class FrameFinder {
   void accept(std::size_t at, std::size_t length) noexcept {
     pass_over(at);
     counters_.bytes_framed += length;
-    ++counters_.intact;
+    ++counters_.frames_good;
   }
 
   // Large compared with a frame, so the remainder is rarely moved.
@@ -191,7 +181,7 @@ class FrameFinder {
   std::bitset<kBuffer> sum_failed_;  // of these, positions with a header
   bool any_failed_ = false;
   std::size_t begin_ = 0, end_ = 0;
-  FrameCounters counters_;
+  ifog_driver_counters counters_{};
 };
 
 }  // namespace ifog::framing

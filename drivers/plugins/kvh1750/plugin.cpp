@@ -11,7 +11,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/framed_driver.h"
 #include "drivers/plugins/kvh1750/frame.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -104,10 +104,9 @@ SetUp read_set_up(const plugin::Options& options) {
   return s;
 }
 
-class Driver {
+class Driver : public framing::FramedDriver<Driver, Protocol> {
  public:
-  explicit Driver(const plugin::Options& options) : Driver(read_set_up(options)) {}
-  explicit Driver(const SetUp& set_up) : set_up_(set_up) {}
+  explicit Driver(const plugin::Options& options) : set_up_(read_set_up(options)) {}
 
   void describe(ifog_description& out) const {
     const bool magnetic = !set_up_.format || set_up_.format == Format::kC;
@@ -120,35 +119,15 @@ class Driver {
     out.baud = 921600;
   }
 
-  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
-              void* sink) noexcept {
-    finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
-      const Frame frame = unpack(found);
-      if (set_up_.format && frame.format != *set_up_.format) {
-        ++other_format_;
-        return;
-      }
-      const ifog_sample sample = sample_of(frame, arrival_ns);
-      emit(sink, &sample);
-    });
-  }
-
-  void reset() noexcept { finder_.reset(); }
-
-  void counters(ifog_driver_counters& out) const { finder_.copy_to(out, other_format_); }
-
   // Throws std::invalid_argument for a value that does not fit.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
-    const Frame frame = frame_of(sample);
-    std::array<std::uint8_t, kLongestFrame> bytes{};
-    const std::size_t length = pack(frame, bytes);
-    emit(sink, bytes.data(), length);
+    send<kLongestFrame>(frame_of(sample), emit, sink);
   }
 
- private:
-  ifog_sample sample_of(const Frame& frame, std::int64_t arrival_ns) noexcept {
+  std::optional<ifog_sample> sample_of(std::span<const std::uint8_t> found) noexcept {
+    const Frame frame = unpack(found);
+    if (set_up_.format && frame.format != *set_up_.format) return std::nullopt;
     ifog_sample sample{};
-    sample.arrival_ns = arrival_ns;
     sample.sequence = frame.sequence % kSequenceModulus;
     sample.status = frame.status;
     sample.flags = IFOG_SAMPLE_SEQUENCE;
@@ -173,16 +152,14 @@ class Driver {
       channels_.set(sample, kMagneticField + quantity - 1,
                     static_cast<double>(frame.slow) * kMicroteslaPerGauss);
     }
-    channels_.copy_to(sample);
     return sample;
   }
 
+ private:
   Frame frame_of(const ifog_sample& sample) {
     Frame frame;
     frame.format = set_up_.format.value_or(Format::kA);
-    frame.sequence = static_cast<std::uint8_t>(
-        ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_) % kSequenceModulus);
-    sent_ = frame.sequence + 1U;
+    frame.sequence = static_cast<std::uint8_t>(count_to_send(sample) % kSequenceModulus);
     for (unsigned axis = 0; axis < 3; ++axis) {
       frame.gyro[axis] = framing::float_of(sample.value[axis] / set_up_.rad_per_unit, "gyro value");
       if ((sample.valid_axes & 1U << axis) != 0)
@@ -223,11 +200,7 @@ class Driver {
   }
 
   SetUp set_up_;
-  framing::FrameFinder<Protocol> finder_;
   framing::Stamp stamp_{1000};
-  std::uint64_t other_format_ = 0;
-  framing::Channels channels_;
-  std::uint32_t sent_ = 0;
 };
 
 constexpr ifog_driver kTable = plugin::byte_driver<Driver>(

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/framed_driver.h"
 #include "drivers/plugins/sbgecom/message.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -34,7 +34,7 @@ constexpr std::array kOptions{
                 "maximum input rate in deg/s: what reaches it is saturated"},
     ifog_option{nullptr, nullptr, nullptr, nullptr}};
 
-class Driver {
+class Driver : public framing::FramedDriver<Driver, Protocol> {
  public:
   explicit Driver(const plugin::Options& options)
       : message_(options.choice<std::optional<std::uint8_t>>(
@@ -49,18 +49,6 @@ class Driver {
     out.has_device_time = 1;
     out.nominal_rate_hz = rate_hz_;
   }
-
-  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
-              void* sink) noexcept {
-    finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
-      Imu imu;
-      if (!unpack(found, imu) || (message_ && imu.message != *message_)) return;
-      const ifog_sample sample = sample_of(imu, arrival_ns);
-      emit(sink, &sample);
-    });
-  }
-
-  void reset() noexcept { finder_.reset(); }
 
   // The device's other messages are good frames, too.
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out); }
@@ -86,15 +74,13 @@ class Driver {
     // The message cannot express a missing temperature.
     if (std::isfinite(sample.environment[kTemperature]))
       imu.temperature_degC = sample.environment[kTemperature];
-    std::array<std::uint8_t, kLongestImuFrame> bytes{};
-    const std::size_t length = pack(imu, bytes);
-    emit(sink, bytes.data(), length);
+    send<kLongestImuFrame>(imu, emit, sink);
   }
 
- private:
-  ifog_sample sample_of(const Imu& imu, std::int64_t arrival_ns) noexcept {
+  std::optional<ifog_sample> sample_of(std::span<const std::uint8_t> found) noexcept {
+    Imu imu;
+    if (!unpack(found, imu) || (message_ && imu.message != *message_)) return std::nullopt;
     ifog_sample sample{};
-    sample.arrival_ns = arrival_ns;
     sample.status = imu.status;
     sample.device_time_ns = stamp_.time_ns(imu.time_stamp_us);
     sample.device_wrap_ns = stamp_.time_ns(kStampModulus);
@@ -110,15 +96,13 @@ class Driver {
         channels_.set(sample, kAcceleration + axis, imu.acceleration_mps2[axis]);
     }
     if (alive) channels_.set(sample, kTemperature, imu.temperature_degC);
-    channels_.copy_to(sample);
     return sample;
   }
 
+ private:
   std::optional<std::uint8_t> message_;
   double rate_hz_, full_scale_radps_;
-  framing::FrameFinder<Protocol> finder_;
   framing::Stamp stamp_{1000};
-  framing::Channels channels_;
 };
 
 constexpr ifog_driver kTable = plugin::byte_driver<Driver>(

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/framed_driver.h"
 #include "drivers/plugins/stdbin/telegram.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -40,7 +40,7 @@ constexpr std::array kOptions{
                 "maximum input rate in deg/s: what reaches it is saturated"},
     ifog_option{nullptr, nullptr, nullptr, nullptr}};
 
-class Driver {
+class Driver : public framing::FramedDriver<Driver, Protocol> {
  public:
   explicit Driver(const plugin::Options& options)
       : raw_(options.choice<bool>("rate_block", {{"raw", true}, {"compensated", false}})),
@@ -60,26 +60,10 @@ class Driver {
     out.nominal_rate_hz = rate_hz_;
   }
 
-  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
-              void* sink) noexcept {
-    finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
-      const Telegram telegram = unpack(found);
-      const std::optional<Triad>& rate = raw_ ? telegram.raw_rate_degps : telegram.rate_degps;
-      if (!rate) {
-        ++without_rate_;
-        return;
-      }
-      const ifog_sample sample = sample_of(telegram, *rate, arrival_ns);
-      emit(sink, &sample);
-    });
-  }
-
   void reset() noexcept {
-    finder_.reset();
+    FramedDriver::reset();
     beyond_a_day_ = false;
   }
-
-  void counters(ifog_driver_counters& out) const { finder_.copy_to(out, without_rate_); }
 
   // Throws std::invalid_argument: no time, a missing axis, or a value that no float holds.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
@@ -88,9 +72,7 @@ class Driver {
     Telegram telegram;
     telegram.version = version_;
     telegram.validity_100us = stamp_.stamp_at(sample.device_time_ns, kTicksOfADay);
-    const std::uint32_t sequence = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_;
-    sent_ = sequence + 1;
-    telegram.counter = sequence;
+    telegram.counter = count_to_send(sample);
     Triad rate{};
     for (unsigned axis = 0; axis < 3; ++axis)
       rate[axis] = (sample.valid_axes & 1U << axis) != 0
@@ -99,9 +81,32 @@ class Driver {
     (raw_ ? telegram.raw_rate_degps : telegram.rate_degps) = rate;
     telegram.raw_acceleration_mps2 = triad_of(sample.environment + kAcceleration, "acceleration");
     telegram.temperature_degC = triad_of(sample.environment + kTemperature, "temperature");
-    std::array<std::uint8_t, kLongestTelegram> bytes{};
-    const std::size_t length = pack(telegram, bytes);
-    emit(sink, bytes.data(), length);
+    send<kLongestTelegram>(telegram, emit, sink);
+  }
+
+  std::optional<ifog_sample> sample_of(std::span<const std::uint8_t> found) noexcept {
+    const Telegram telegram = unpack(found);
+    const std::optional<Triad>& rate = raw_ ? telegram.raw_rate_degps : telegram.rate_degps;
+    if (!rate) return std::nullopt;
+    ifog_sample sample{};
+    sample.status = telegram.sensor_status.value_or(0);
+    sample.sequence = telegram.counter % kSequenceModulus;
+    // A stamp above a day is no time of day.
+    beyond_a_day_ = beyond_a_day_ || telegram.validity_100us >= kTicksOfADay;
+    sample.device_time_ns = stamp_.time_ns(telegram.validity_100us);
+    sample.device_wrap_ns = stamp_.time_ns(beyond_a_day_ ? kTicksOfTheField : kTicksOfADay);
+    sample.flags = IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      sample.value[axis] = static_cast<double>((*rate)[axis]) * kRadiansPerDegree;
+      if (std::isfinite(sample.value[axis])) sample.valid_axes |= 1U << axis;
+    }
+    const auto take = [&](const std::optional<Triad>& values, std::size_t channel) {
+      for (std::size_t i = 0; values && i < values->size(); ++i)
+        channels_.set(sample, channel + i, static_cast<double>((*values)[i]));
+    };
+    take(telegram.raw_acceleration_mps2, kAcceleration);
+    take(telegram.temperature_degC, kTemperature);
+    return sample;
   }
 
  private:
@@ -116,39 +121,11 @@ class Driver {
     return any ? std::optional(out) : std::nullopt;
   }
 
-  ifog_sample sample_of(const Telegram& telegram, const Triad& rate, std::int64_t arrival_ns) noexcept {
-    ifog_sample sample{};
-    sample.arrival_ns = arrival_ns;
-    sample.status = telegram.sensor_status.value_or(0);
-    sample.sequence = telegram.counter % kSequenceModulus;
-    // A stamp above a day is no time of day.
-    beyond_a_day_ = beyond_a_day_ || telegram.validity_100us >= kTicksOfADay;
-    sample.device_time_ns = stamp_.time_ns(telegram.validity_100us);
-    sample.device_wrap_ns = stamp_.time_ns(beyond_a_day_ ? kTicksOfTheField : kTicksOfADay);
-    sample.flags = IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      sample.value[axis] = static_cast<double>(rate[axis]) * kRadiansPerDegree;
-      if (std::isfinite(sample.value[axis])) sample.valid_axes |= 1U << axis;
-    }
-    const auto take = [&](const std::optional<Triad>& values, std::size_t channel) {
-      for (std::size_t i = 0; values && i < values->size(); ++i)
-        channels_.set(sample, channel + i, static_cast<double>((*values)[i]));
-    };
-    take(telegram.raw_acceleration_mps2, kAcceleration);
-    take(telegram.temperature_degC, kTemperature);
-    channels_.copy_to(sample);
-    return sample;
-  }
-
   bool raw_;
   std::uint8_t version_;
   double rate_hz_, full_scale_radps_;
-  framing::FrameFinder<Protocol> finder_;
   framing::Stamp stamp_{kTick_ns};
-  framing::Channels channels_;
-  std::uint64_t without_rate_ = 0;
   bool beyond_a_day_ = false;
-  std::uint32_t sent_ = 0;
 };
 
 constexpr ifog_driver kTable = plugin::byte_driver<Driver>(

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/plugins/framing/fields.h"
+#include "drivers/plugins/framing/framed_driver.h"
 #include "drivers/plugins/stim300/datagram.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"
@@ -126,10 +126,10 @@ unsigned usable_axes(std::uint8_t status) {
   return named == 0 ? 0 : 7U & ~named;
 }
 
-class Driver {
+class Driver : public framing::FramedDriver<Driver, Protocol> {
  public:
-  explicit Driver(const plugin::Options& options)
-      : set_up_(read_set_up(options)), finder_(Protocol{set_up_.terminated}) {}
+  explicit Driver(const plugin::Options& options) : Driver(read_set_up(options)) {}
+  explicit Driver(const SetUp& set_up) : FramedDriver(Protocol{set_up.terminated}), set_up_(set_up) {}
 
   void describe(ifog_description& out) const {
     out = framing::three_axes(kFullScale_radps, kNames);
@@ -139,23 +139,8 @@ class Driver {
     out.angle_wrap_rad = set_up_.kind == IFOG_ANGLE ? kAngleWrap_rad : 0.0;
   }
 
-  void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
-              void* sink) noexcept {
-    finder_.feed(bytes, [&](std::span<const std::uint8_t> found) {
-      const Content content = *content_of(found[0]);
-      if (set_up_.datagram && content != *set_up_.datagram) {
-        ++other_datagram_;
-        return;
-      }
-      const ifog_sample sample = sample_of(unpack(content, found), arrival_ns);
-      emit(sink, &sample);
-    });
-  }
-
-  void reset() noexcept { finder_.reset(); }
-
   void counters(ifog_driver_counters& out) const {
-    finder_.copy_to(out, other_datagram_);
+    FramedDriver::counters(out);
     // Any byte may look like the one-byte header, so a wrong checksum does not prove a frame. Losses show in
     // the skipped bytes and the sequence.
     out.frames_crc = 0;
@@ -163,23 +148,16 @@ class Driver {
 
   // Throws std::invalid_argument for a value that does not fit.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
-    std::array<std::uint8_t, kLongestDatagram> bytes{};
-    const std::size_t length = pack(datagram_of(sample), bytes);
-    emit(sink, bytes.data(), length);
+    send<kLongestDatagram>(datagram_of(sample), emit, sink);
     constexpr std::array<std::uint8_t, kTermination> kEnd{'\r', '\n'};
     if (set_up_.terminated) emit(sink, kEnd.data(), kEnd.size());
   }
 
- private:
-  void take(ifog_sample& sample, std::size_t channel, const Triad& triad, double scale) noexcept {
-    for (unsigned axis = 0; axis < 3; ++axis)
-      if ((usable_axes(triad.status) & 1U << axis) != 0)
-        channels_.set(sample, channel + axis, triad.count[axis] * scale);
-  }
-
-  ifog_sample sample_of(const Datagram& in, std::int64_t arrival_ns) noexcept {
+  std::optional<ifog_sample> sample_of(std::span<const std::uint8_t> found) noexcept {
+    const Content content = *content_of(found[0]);
+    if (set_up_.datagram && content != *set_up_.datagram) return std::nullopt;
+    const Datagram in = unpack(content, found);
     ifog_sample sample{};
-    sample.arrival_ns = arrival_ns;
     sample.status = in.gyro.status | static_cast<std::uint32_t>(in.acceleration.status) << 8U |
                     static_cast<std::uint32_t>(in.inclination.status) << 16U;
     if (set_up_.counter_step != 0) {
@@ -188,7 +166,6 @@ class Driver {
     }
     for (unsigned axis = 0; axis < 3; ++axis) sample.value[axis] = in.gyro.count[axis] * set_up_.gyro_scale();
     sample.valid_axes = usable_axes(in.gyro.status);
-    const Content& content = in.content;
     if (content.acceleration) take(sample, kAcceleration, in.acceleration, set_up_.acceleration_scale());
     if (content.inclination) take(sample, kInclination, in.inclination, set_up_.inclination_scale());
     if (content.temperature) {
@@ -203,8 +180,14 @@ class Driver {
     if (content.pps) channels_.set(sample, kPps, in.extra);
     if (content.aux && usable_axes(in.extra_status) == 7) channels_.set(sample, kAux, in.extra / kAuxCounts);
     channels_.set(sample, kLatency, in.latency_us);
-    channels_.copy_to(sample);
     return sample;
+  }
+
+ private:
+  void take(ifog_sample& sample, std::size_t channel, const Triad& triad, double scale) noexcept {
+    for (unsigned axis = 0; axis < 3; ++axis)
+      if ((usable_axes(triad.status) & 1U << axis) != 0)
+        channels_.set(sample, channel + axis, triad.count[axis] * scale);
   }
 
   // Missing values become 0 with the status of a channel error.
@@ -253,9 +236,7 @@ class Driver {
     else
       out.extra_status = kChannelError;
     const std::uint32_t step = set_up_.counter_step == 0 ? 1 : set_up_.counter_step;
-    const std::uint32_t sequence = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 ? sample.sequence : sent_;
-    sent_ = sequence + 1;
-    out.counter = static_cast<std::uint8_t>(sequence * step % kCounterModulus);
+    out.counter = static_cast<std::uint8_t>(count_to_send(sample) * step % kCounterModulus);
     const double latency = sample.environment[kLatency];
     if (std::isfinite(latency))
       out.latency_us = static_cast<std::uint16_t>(std::clamp(std::round(latency), 0.0, 65535.0));
@@ -269,10 +250,6 @@ class Driver {
   }
 
   SetUp set_up_;
-  framing::FrameFinder<Protocol> finder_;
-  std::uint64_t other_datagram_ = 0;
-  framing::Channels channels_;
-  std::uint32_t sent_ = 0;
 };
 
 constexpr ifog_driver kTable =

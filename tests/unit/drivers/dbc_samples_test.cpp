@@ -8,6 +8,7 @@
 namespace {
 
 using ifog::DbcText;
+using ifog::frame;
 
 // Axis 0, 1 or 2 of ifogd_gyro.dbc.
 ifog_can_frame axis(int which, float rate, int counter) {

@@ -12,23 +12,21 @@ namespace {
 // Frames packed by hand from the tables of the maker's manual; the CRCs at their ends come from long division
 // done outside this program.
 
-std::vector<std::uint8_t> hex(std::string_view text) { return ifog::hex_bytes(std::string(text)); }
-
 //                                 header    gyro 1, -2, 0.5             accelerometer 0, 1, -1      st sq 25
 //                                 CRC
-const std::string_view kFrameA =
+const char* const kFrameA =
     "FE81FF55 3F800000 C0000000 3F000000 00000000 3F800000 BF800000 77 05 0019 F6EB3358";
 //                                           0.1      -0.1     NaN       3.1415927, 0, -1       12 s     st sq
 //                                           -10
-const std::string_view kFrameB =
+const char* const kFrameB =
     "FE81FF56 3DCCCCCD BDCCCCCD 7FC00000 40490FDB 00000000 BF800000 00B71B00 73 7F FFF6 3736CF8E";
 //                                                                                              0.49 gauss, y
-const std::string_view kFrameC =
+const char* const kFrameC =
     "FE81FF57 3F800000 C0000000 3F000000 00000000 3F800000 BF800000 3EFAE148 77 06 DCB3C67E";
 
 TEST(Kvh1750, FormatAPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {});
-  const ifog_sample s = ifog::one_sample(driver, hex(kFrameA));
+  const ifog_sample s = ifog::one_sample(driver, ifog::hex_bytes(kFrameA));
   EXPECT_EQ(s.arrival_ns, 42);
   EXPECT_EQ(s.flags, IFOG_SAMPLE_SEQUENCE);
   EXPECT_EQ(s.sequence, 5U);
@@ -44,7 +42,8 @@ TEST(Kvh1750, FormatAPackedByHand) {
 TEST(Kvh1750, TheManualsSampleOutput) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"output", "delta"}});
   const std::vector<ifog_sample> samples = ifog::decoded(
-      driver, hex("FE81FF55 37A96A6E 38586C1F B75BF862 BF803E78 BB650D28 3B0A37AC 77 3D 0028 4BFA34D8"));
+      driver,
+      ifog::hex_bytes("FE81FF55 37A96A6E 38586C1F B75BF862 BF803E78 BB650D28 3B0A37AC 77 3D 0028 4BFA34D8"));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(driver.description().kind, unsigned{IFOG_DELTA_ANGLE});
@@ -58,7 +57,7 @@ TEST(Kvh1750, TheManualsSampleOutput) {
 TEST(Kvh1750, FormatBPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver(
       "kvh1750", {{"format", "b"}, {"angle_unit", "degrees"}, {"temperature", "centi_degC"}});
-  const ifog_sample s = ifog::one_sample(driver, hex(kFrameB));
+  const ifog_sample s = ifog::one_sample(driver, ifog::hex_bytes(kFrameB));
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME});
   EXPECT_EQ(s.device_time_ns, 12'000'000'000);
   EXPECT_EQ(s.sequence, 127U);
@@ -71,7 +70,7 @@ TEST(Kvh1750, FormatBPackedByHand) {
 
 TEST(Kvh1750, FormatCPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "c"}});
-  const ifog_sample s = ifog::one_sample(driver, hex(kFrameC));
+  const ifog_sample s = ifog::one_sample(driver, ifog::hex_bytes(kFrameC));
   EXPECT_EQ(s.sequence, 6U);  // modulo four: 2, the field along y
   EXPECT_EQ(s.environment_fresh, 0b0100111U);
   EXPECT_NEAR(s.environment[5], 49.0, 1e-5);  // µT
@@ -81,7 +80,7 @@ TEST(Kvh1750, FormatCPackedByHand) {
 
 TEST(Kvh1750, AnInvalidStatusBitInvalidatesItsAxisOnly) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {});
-  std::vector<std::uint8_t> frame = hex(kFrameA);
+  std::vector<std::uint8_t> frame = ifog::hex_bytes(kFrameA);
   frame.resize(32);
   frame[28] = 0x25;  // gyro x and z, accelerometer y
   ifog::append_crc32(frame);
@@ -92,8 +91,8 @@ TEST(Kvh1750, AnInvalidStatusBitInvalidatesItsAxisOnly) {
 
 TEST(Kvh1750, AnotherFormatThanConfiguredIsCountedNotTaken) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "a"}});
-  EXPECT_TRUE(ifog::decoded(driver, hex(kFrameB)).empty());
-  EXPECT_EQ(ifog::decoded(driver, hex(kFrameA)).size(), 1U);
+  EXPECT_TRUE(ifog::decoded(driver, ifog::hex_bytes(kFrameB)).empty());
+  EXPECT_EQ(ifog::decoded(driver, ifog::hex_bytes(kFrameA)).size(), 1U);
   EXPECT_EQ(driver.counters().frames_format, 1U);
   EXPECT_EQ(driver.counters().frames_good, 1U);
   EXPECT_EQ(driver.counters().bytes_skipped, 0U);
@@ -103,7 +102,7 @@ TEST(Kvh1750, TheStampRollsOverAsTheDeviceIsSet) {
   for (const auto& [set, wrap_ns] :
        {std::pair("free", (std::int64_t{1} << 32U) * 1000), std::pair("pps", std::int64_t{1'000'000'000})}) {
     ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "b"}, {"time_stamp", set}});
-    EXPECT_EQ(ifog::one_sample(driver, hex(kFrameB)).device_wrap_ns, wrap_ns);
+    EXPECT_EQ(ifog::one_sample(driver, ifog::hex_bytes(kFrameB)).device_wrap_ns, wrap_ns);
   }
 }
 
@@ -136,7 +135,7 @@ TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStream) {
 TEST(Kvh1750, EncodesTheHandPackedFramesAgain) {
   for (const auto& [format, text] : {std::pair{"a", kFrameA}, {"b", kFrameB}}) {
     ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", format}});
-    const std::vector<std::uint8_t> bytes = hex(text);
+    const std::vector<std::uint8_t> bytes = ifog::hex_bytes(text);
     std::vector<std::uint8_t> again;
     driver.encode_bytes(ifog::decoded(driver, bytes).at(0), again);
     EXPECT_EQ(again, bytes) << format;

@@ -21,7 +21,6 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can/can_socket.h"
-#include "drivers/transport/network/ip_socket.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/transport/network/ip_address.h"
+#include "drivers/transport/network/ip_socket.h"
 #include "drivers/transport/serial/serial_port.h"
 #include "tools/ifog/replay/replay_timeline.h"
 
