@@ -41,7 +41,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
      "command commanded cmd setpoint desired target drift "},
     {Role::truth,
      " reference ref truth true groundtruth gt table turntable ratetable encoder "
-     "command commanded cmd setpoint desired target "},
+     "command commanded "},
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang heading winkel integrated cumulative "},
     {Role::time,

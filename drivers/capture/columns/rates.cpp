@@ -185,7 +185,10 @@ std::vector<Rates> sensors_by_place(const TableSample& table, const std::optiona
     const TableColumn& column = table.columns[i];
     const bool of_time =
         time && ("+" + time->header + "+").find("+" + column.name + "+") != std::string::npos;
-    if (!of_time && column.varies() && column.name != counted) found.push_back({i});
+    // A position or a pressure changes by less than a millionth from row to row.
+    const bool changes = column.varies() && scatter(column) > 1e-6 * std::abs(column.values[0]) *
+                                                                  static_cast<double>(column.values.size());
+    if (!of_time && changes && column.name != counted) found.push_back({i});
   }
   if (found.empty()) return {};
   if (found.size() < 3) return {{found[0]}};

@@ -90,9 +90,14 @@ bool may_be_day(double day) {
 
 // The unit in which the values are times since 1970, or the only one with a plausible sample rate; else all in which
 // they can be times. False: no unit has a plausible rate.
-bool settle_unit(TimeCandidate& found, const std::vector<double>& values) {
+bool settle_unit(TimeCandidate& found, const TableColumn& column) {
+  const std::vector<double>& values = column.values;
   std::vector<std::string> all{"s", "ms", "us", "ns"};
   if (!values.empty() && may_be_day(values.front())) all.emplace_back("d");
+  // Whole seconds of a gyro increase by one at most.
+  const auto leaps = [](double before, double now) { return now - before > 1.0; };
+  if (column.is_whole() && std::ranges::adjacent_find(values, leaps) != values.end())
+    std::rotate(all.begin(), all.begin() + 1, all.end());
   const double step = values.size() < 2 ? 0.0 : mean_step(values);
   for (const std::string& unit : all) {
     const double unit_s = seconds_a(unit), rate_hz = 1.0 / (step * unit_s);
@@ -192,7 +197,7 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
   if (!out.time.unit.empty()) return out;
   if (column.counts_rows()) return std::nullopt;
   out.units.clear();
-  return settle_unit(out, column.values) || table.named ? std::optional(out) : std::nullopt;
+  return settle_unit(out, column) || table.named ? std::optional(out) : std::nullopt;
 }
 
 std::vector<std::string> words_of(const std::string& name) {

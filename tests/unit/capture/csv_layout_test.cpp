@@ -192,7 +192,7 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(refusal_of("t,u,g\n0,1,2\n1,2,3\n", layout({"rate_radps=#6:deg/s"})),
             "a.csv:1: no column '#6', the header has 't', 'u', 'g'");
   EXPECT_EQ(refusal_of("t,w,w\n0,1,1\n", by),
-            "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
+            "a.csv:1: more than one column 'w', #2, #3, the header has 't', 'w', 'w'");
   EXPECT_EQ(refusal_of("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
   EXPECT_EQ(refusal_of("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");

@@ -135,7 +135,8 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
         "or: "
         "--time t_s:s --column rate_radps=gyro2_dps:dps; or: "}},
       // KITTI's oxts begins with a latitude, and a filter's output with a number of the row: none is a time in days.
-      {rows_of("", "49.00000{i} 8.4 {x} {y} {z}"), {"no time column; to read it: --sample-rate HZ"}},
+      {rows_of("", "49.00000{i} 8.4 {x} {y} {z}"),
+       {"no time column; to read it: --sample-rate HZ --column 'rate_x_radps=#3:rad/s'"}},
       {rows_of("", "{i} -0.00001{i} {x} {y}"),
        {"no time column, '#1' counts the rows; to read it: --sample-rate"}},
       // Laser gyro test stands write the arcsecond's sign.
@@ -232,7 +233,7 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("Time,KX_IMU_ax,IMU_gx,IMU_gy\n", "0.{i},1.0,{x},{y}"),
        {"--time Time:s --column rate_x_radps=IMU_gx:rad/s --column rate_y_radps=IMU_gy:rad/s"}},
       {rows_of("lowG_data.timeStamp_lowG,lowG_data.ax,lowG_data.gx\n", "194{i}000,1.0,{x}"),
-       {"--time lowG_data.timeStamp_lowG:s --column rate_x_radps=lowG_data.gx:rad/s"}},
+       {"--time lowG_data.timeStamp_lowG:ms --column rate_x_radps=lowG_data.gx:rad/s"}},
       // A matrix of MATLAB 7.3: time and rates in one.
       {rows_of("buffer[0],buffer[1],buffer[2],buffer[3]\n", "0.{i},{x},{y},{z}"),
        {"--time 'buffer[0]:s' --column 'rate_x_radps=buffer[1]:rad/s' --column "
@@ -332,6 +333,32 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
                                         << all << "\nof\n"
                                         << each.text.substr(0, 300);
   }
+}
+
+// VMU931: whole milliseconds, of which some stand twice and some are missing, are no seconds.
+TEST(OtherPrograms, WholeSecondsIncreaseByOneAtMost) {
+  std::string text = "Time stamp,gyro_x\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(156496 + i + (i % 4 == 2 ? 1 : 0)) + ",0.00" + std::to_string(i % 7) + "\n";
+  const std::string said = refusal_of(text);
+  EXPECT_TRUE(test::has(said, "--time 'Time stamp:ms'")) << said;
+  EXPECT_TRUE(test::has(said, "in the place of ms: us, ns, s;")) << said;
+}
+
+// A second reference is only listed, a set point is no reference, and columns of one name are told by their numbers.
+TEST(OtherPrograms, OneReferenceIsOffered) {
+  const auto notices = [](const std::string& header) {
+    return parse_capture(rows_of(header, "0.{i},{x},{x},{y}"), "a.csv").notices.back();
+  };
+  EXPECT_EQ(notices("time_s,gyro_x_dps,gt_rate_x_dps,table_rate_x_dps\n"),
+            "a.csv: not read: 'table_rate_x_dps'");
+  EXPECT_EQ(notices("time_s,gyro_x_dps,rate_x_desired_dps,rate_x_cmd_dps\n"),
+            "a.csv: not read: 'rate_x_desired_dps', 'rate_x_cmd_dps'");
+  CsvLayout given;
+  given.time = CsvTime::parse("t:s");
+  given.columns = {CsvColumn::parse("rate_radps=x:rad/s")};
+  EXPECT_EQ(refusal_of("t,x,y,x\n0,1,1,1\n1,1,1,1\n", given),
+            "a.csv:1: more than one column 'x', #2, #4, the header has 't', 'x', 'y', 'x'");
 }
 
 TEST(OtherPrograms, WholeNumbersNameASensorAndMeasuredValuesDoNot) {
