@@ -264,6 +264,18 @@ Notation notation_of(const Grid& grid) {
   return by;
 }
 
+// Columns of VectorNav's ASCII sentences (VN-100 User Manual, asynchronous outputs); empty for other rows.
+std::vector<std::string> names_by_sentence(const std::vector<std::string>& row) {
+  std::vector<std::string> names{"sentence"};
+  const auto add = [&](std::initializer_list<std::string> more) { names.insert(names.end(), more); };
+  if (row[0] == "$VNYMR") add({"yaw_deg", "pitch_deg", "roll_deg"});
+  if (names.size() == 1 && row[0] != "$VNIMU") return {};
+  add({"mag_x_gauss", "mag_y_gauss", "mag_z_gauss", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2",
+       "gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
+  if (row[0] == "$VNIMU") add({"temperature_degC", "pressure_kPa"});
+  return names.size() == row.size() ? names : std::vector<std::string>();
+}
+
 // Cells of the first rows, by column.
 std::vector<std::vector<std::string>> first_cells(const Grid& grid, Notation by, std::size_t from,
                                                   std::size_t columns) {
@@ -341,9 +353,10 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   if (!headed && given.empty() && grid.first() && layout.only_header.empty())
     headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, units, form);
   if (!headed && grid.first()) {
-    sample.named = !given.empty();
     std::vector<std::string> names = given;
-    for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
+    if (given.empty()) names = names_by_sentence(grid.rows()[*grid.first()].cells);
+    sample.named = !names.empty();
+    for (std::size_t i = 0; !sample.named && i < grid.width(); ++i)
       names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
     sample.set(names, {}, first_cells(grid, form.notation, *grid.first(), names.size()));

@@ -63,13 +63,12 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
         "in the place of rad/s: deg/s, deg/h, rad/sample, deg/sample, rad, deg"}},
       // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
       {rows_of("", "$VNIMU,-0.0350,+0.4222,-0.6643,-0.015,+0.019,+9.80{digit},{x},{y},{z},+20.7,+84.322*00"),
-       {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
-        "--column 'rate_z_radps=#10:rad/s'; in"}},
+       {"to read it: --sample-rate HZ --column rate_x_radps=gyro_x_radps:radps --column "
+        "rate_y_radps=gyro_y_radps:radps --column rate_z_radps=gyro_z_radps:radps --column mag_x"}},
       // The same, $VNYMR: angles, magnetic field, acceleration, rates, which a checksum follows.
       {rows_of("",
                "$VNYMR,-165.9,-037.2,+001.2,+0.289,+0.070,+0.748,-05.96,-00.18,-07.7{digit},{x},{y},{z}*69"),
-       {"to read it: --sample-rate HZ --column 'rate_x_radps=#11:rad/s' --column 'rate_y_radps=#12:rad/s' "
-        "--column 'rate_z_radps=#13:rad/s'; in"}},
+       {"a.csv:1: no time column; to read it: --sample-rate HZ --column rate_x_radps=gyro_x_radps:radps"}},
       // A reference of one axis under the capture's name.
       {rows_of("t_s,rate_radps,reference_rate_radps\n", "0.{i},{x},{y}"),
        {"reference_rate 'reference_rate_radps' in radps"}},
@@ -139,6 +138,17 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"no time column; to read it: --sample-rate HZ --column 'rate_x_radps=#3:rad/s'"}},
       {rows_of("", "{i} -0.00001{i} {x} {y}"),
        {"no time column, '#1' counts the rows; to read it: --sample-rate"}},
+      // Axes under names of their own are offered in the order of the columns, and one by one.
+      {rows_of("t_s,gyro_fwd_dps,gyro_right_dps,gyro_down_dps\n", "0.{i},{x},{y},{z}"),
+       {"to read it: --time t_s:s --column rate_x_radps=gyro_fwd_dps:dps --column "
+        "rate_y_radps=gyro_right_dps:dps "
+        "--column rate_z_radps=gyro_down_dps:dps; or: --time t_s:s --column rate_radps=gyro_fwd_dps:dps; "
+        "or:"}},
+      {rows_of("t_s,omega_p,omega_q,omega_r\n", "0.{i},{x},{y},{z}"),
+       {"--column rate_z_radps=omega_r:rad/s; or:"}},
+      {rows_of("t_s,GyroA,GyroB,GyroC\n", "0.{i},{x},{y},{z}"), {"--column rate_z_radps=GyroC:rad/s; or:"}},
+      {rows_of("t_s,Axis1 Rate (deg/s),Axis2 Rate (deg/s),Axis3 Rate (deg/s)\n", "0.{i},{x},{y},{z}"),
+       {"--column 'rate_z_radps=Axis3 Rate (deg/s):deg/s'; or:"}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
       // A laboratory's logger: three temperatures below one name, and names of sensors that are switched off.
