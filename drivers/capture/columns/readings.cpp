@@ -84,9 +84,10 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
           {capture_name(rate), table.columns[rate.place].header, rate.units.front(), rate.scale});
     shown = columns.size();
     add_others(table, rates, columns);
-    if (const auto interval = interval_of(table, way.layout)) columns.push_back(*interval);
     // Limits the line; the user can ask for more columns.
     if (columns.size() <= kMostShown) shown = columns.size();
+    // Not shown, because its unit is that of rows whose time is chosen.
+    if (const auto interval = interval_of(table, way.layout)) columns.push_back(*interval);
   }
   for (std::size_t i = 0; i < shown; ++i) add(option_for(columns[i], columns[i].unit));
   return way;

@@ -264,14 +264,6 @@ class Checks:
                    unasked=True, says=("time 'timestamp_sec_imu+timestamp_nanosec_imu'", "20 rows without 'timestamp_sec_imu' are of another sensor and dropped"))
         self.reads("pedestrian.csv", ["GPST,Ax,Ay,Az,Gx,Gy,Gz", *self.rows(lambda i, x, y, z: (f"{390884.272 + i / RATE_HZ:.3f}", -1.8, -9.6, 1.4, x, y, z))], unasked=False)
 
-    def check_a_long_line_costs_no_more_than_its_length(self):
-        """As of XML or base64 in one line, above the header, among the rows, and longer than a line may be."""
-        for mark in ("-", '"', "{", "2026-", "-.", ' "'):
-            for size in (900_000, 1_100_000):
-                line = mark * (size // len(mark))
-                read = ran("convert", self.file("line.csv", ["# " + line, "time_s,rate_radps", "0,0", line, *map("{0},0".format, range(1, 200))]), self.folder / "line_read.csv")
-                assert read.returncode == (0 if size < 2**20 else 1), (mark, size, read.stderr[:200])
-
     def check_stamps(self):
         header = "time_s,rate_x_radps"
         self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))

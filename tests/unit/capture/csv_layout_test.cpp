@@ -121,6 +121,32 @@ TEST(CsvLayout, AJumpOfTheCounterOfRowsIsAGap) {
                              "a.csv: of the rows that 'PacketCounter' counts 503 are missing: gaps in time"});
 }
 
+// VMU931: whole milliseconds, of which some stand twice and some are missing, are no seconds.
+TEST(CsvLayout, WholeSecondsIncreaseByOneAtMost) {
+  std::string text = "Time stamp,gyro_x\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(156496 + i + (i % 4 == 2 ? 1 : 0)) + ",0.00" + std::to_string(i % 7) + "\n";
+  const std::string said = refusal_of(text);
+  EXPECT_TRUE(test::has(said, "--time 'Time stamp:ms'")) << said;
+  EXPECT_TRUE(test::has(said, "in the place of ms: us, ns, s;")) << said;
+}
+
+// A second reference is only listed, a set point is no reference, and columns of one name are told by their numbers.
+TEST(CsvLayout, OneReferenceIsOffered) {
+  const auto notices = [](const std::string& header) {
+    return parse_capture(rows_of(header, "0.{i},{x},{x},{y}"), "a.csv").notices.back();
+  };
+  EXPECT_EQ(notices("time_s,gyro_x_dps,gt_rate_x_dps,table_rate_x_dps\n"),
+            "a.csv: not read: 'table_rate_x_dps'");
+  EXPECT_EQ(notices("time_s,gyro_x_dps,rate_x_desired_dps,rate_x_cmd_dps\n"),
+            "a.csv: not read: 'rate_x_desired_dps', 'rate_x_cmd_dps'");
+  CsvLayout given;
+  given.time = CsvTime::parse("t:s");
+  given.columns = {CsvColumn::parse("rate_radps=x:rad/s")};
+  EXPECT_EQ(refusal_of("t,x,y,x\n0,1,1,1\n1,1,1,1\n", given),
+            "a.csv:1: more than one column 'x', #2, #4, the header has 't', 'x', 'y', 'x'");
+}
+
 // vehicle_imu of PX4, thinned out to 2 Hz, and loggers that name the unit, or none: 1 mrad in 4 ms each. An interval that
 // is longer than the rows are apart is of something else.
 TEST(CsvLayout, AnIncrementIsOfTheIntervalInItsRow) {

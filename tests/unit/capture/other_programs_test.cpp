@@ -6,29 +6,6 @@
 namespace ifog {
 namespace {
 
-// A row for each of `rows`: what stands before, between and behind the rates, {i} being the row's number and
-// {x}, {y}, {z} white noise of 0.001.
-std::string rows_of(const std::string& head, const std::string& form, int rows = 40) {
-  std::string text = head;
-  std::uint32_t dice = 1;
-  for (int i = 0; i < rows; ++i) {
-    std::string row = form;
-    const auto put = [&row](const std::string& name, const std::string& value) {
-      for (std::size_t at; (at = row.find(name)) != std::string::npos;) row.replace(at, name.size(), value);
-    };
-    for (const char* axis : {"{x}", "{y}", "{z}"}) {
-      dice = dice * 1664525U + 1013904223U;
-      put(axis, std::to_string(1e-3 * (static_cast<double>(dice >> 16U) / 32768.0 - 1.0)));
-    }
-    put("{count}", std::to_string(static_cast<int>(dice >> 20U) - 2048));
-    put("{angle}", std::to_string(3.0 + 1e-3 * i));
-    put("{digit}", std::to_string(7 * i % 10));
-    put("{i}", std::to_string(100 + i));
-    text += row + "\n";
-  }
-  return text;
-}
-
 TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
   struct Case {
     std::string text;
@@ -343,32 +320,6 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
                                         << all << "\nof\n"
                                         << each.text.substr(0, 300);
   }
-}
-
-// VMU931: whole milliseconds, of which some stand twice and some are missing, are no seconds.
-TEST(OtherPrograms, WholeSecondsIncreaseByOneAtMost) {
-  std::string text = "Time stamp,gyro_x\n";
-  for (int i = 0; i < 40; ++i)
-    text += std::to_string(156496 + i + (i % 4 == 2 ? 1 : 0)) + ",0.00" + std::to_string(i % 7) + "\n";
-  const std::string said = refusal_of(text);
-  EXPECT_TRUE(test::has(said, "--time 'Time stamp:ms'")) << said;
-  EXPECT_TRUE(test::has(said, "in the place of ms: us, ns, s;")) << said;
-}
-
-// A second reference is only listed, a set point is no reference, and columns of one name are told by their numbers.
-TEST(OtherPrograms, OneReferenceIsOffered) {
-  const auto notices = [](const std::string& header) {
-    return parse_capture(rows_of(header, "0.{i},{x},{x},{y}"), "a.csv").notices.back();
-  };
-  EXPECT_EQ(notices("time_s,gyro_x_dps,gt_rate_x_dps,table_rate_x_dps\n"),
-            "a.csv: not read: 'table_rate_x_dps'");
-  EXPECT_EQ(notices("time_s,gyro_x_dps,rate_x_desired_dps,rate_x_cmd_dps\n"),
-            "a.csv: not read: 'rate_x_desired_dps', 'rate_x_cmd_dps'");
-  CsvLayout given;
-  given.time = CsvTime::parse("t:s");
-  given.columns = {CsvColumn::parse("rate_radps=x:rad/s")};
-  EXPECT_EQ(refusal_of("t,x,y,x\n0,1,1,1\n1,1,1,1\n", given),
-            "a.csv:1: more than one column 'x', #2, #4, the header has 't', 'x', 'y', 'x'");
 }
 
 TEST(OtherPrograms, WholeNumbersNameASensorAndMeasuredValuesDoNot) {
