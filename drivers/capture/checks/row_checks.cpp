@@ -93,12 +93,16 @@ void as_rates(RowBlock& all, const std::vector<FileColumn>& columns, const RowNo
   RowTimes times(all.time_s, clock);
   std::vector<double> even_s;
   for (const double stamp_s : all.time_s) even_s.push_back(times.next(stamp_s));
+  std::vector<double> interval_s(all.size(), clock.period_s);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i].name == kInterval) interval_s = all.columns[i];
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const FileColumn& column = columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.unit.ends_with("/sample")) {
-      for (double& value : values) value /= clock.period_s;
+      for (std::size_t row = 0; row < values.size(); ++row)
+        values[row] = interval_s[row] > 0.0 ? values[row] / interval_s[row] : kMissing;
     } else {
       // Either the samples are uneven or only their stamps, as those in ticks: with the wrong times the rates are rougher.
       std::vector<double> by_even = derivative(values, even_s);

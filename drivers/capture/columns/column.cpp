@@ -6,7 +6,9 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "drivers/capture/columns/csv_layout.h"
@@ -39,7 +41,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
      "command commanded cmd setpoint desired target drift "},
     {Role::truth,
      " reference ref truth true groundtruth gt table turntable ratetable encoder "
-     "command commanded cmd setpoint desired target "},
+     "command commanded "},
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang heading winkel integrated cumulative "},
     {Role::time,
@@ -56,13 +58,13 @@ bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
-// "gyro_rad[0]" is "gyro_rad" and axis x; an index above 2 is no axis.
-std::string without_index(const std::string& header, std::string& axis) {
+// "gyro_rad[0]" is "gyro_rad" and number 0.
+std::string without_index(const std::string& header, char& number) {
   const std::size_t open = header.rfind('[');
   if (open == std::string::npos || header.size() != open + 3 || header.back() != ']' ||
       !is_digit(header[open + 1]))
     return header;
-  if (header[open + 1] <= '2') axis = axis_name(static_cast<std::size_t>(header[open + 1] - '0'));
+  number = header[open + 1];
   return header.substr(0, open);
 }
 
@@ -164,7 +166,7 @@ bool says(std::string_view word, Role role) {
 }
 
 Words::Words(const std::string& header) {
-  const std::string bare = without_unit(without_index(header, axis));
+  const std::string bare = without_unit(without_index(header, number));
   const bool any_language = printable(bare, bare.size()) == bare;  // UTF-8
   for (const char c : lower(bare)) {
     const bool foreign = any_language && static_cast<unsigned char>(c) >= 0x80U;
@@ -185,10 +187,10 @@ Words::Words(const std::string& header) {
     stem += (stem.empty() ? "" : " ") + word;
   }
   if (axis.empty()) axis = turned;
-  // gyro_0, gyro_1, gyro_2: a final number counts axes from 0.
-  if (axis.empty() && words.size() > 1 && words.back().size() == 1 && words.back()[0] >= '0' &&
-      words.back()[0] <= '2') {
-    axis = axis_name(static_cast<std::size_t>(words.back()[0] - '0'));
+  // gyro_0, gyro_1, gyro_2
+  if (axis.empty() && number == '\0' && words.size() > 1 && words.back().size() == 1 &&
+      is_digit(words.back()[0])) {
+    number = words.back()[0];
     words.pop_back();
     stem = stem.substr(0, stem.rfind(' '));
   }
@@ -256,11 +258,21 @@ bool TableColumn::is_smooth() const {
 void TableSample::set(const std::vector<std::string>& names, const std::vector<std::string>& units,
                       const std::vector<std::vector<std::string>>& cells) {
   columns.clear();
+  std::map<std::string, std::set<char>> numbers;  // of names that are equal otherwise
   for (std::size_t i = 0; i < names.size(); ++i) {
     TableColumn& column = columns.emplace_back(names[i], units.empty() ? "" : units[i], cells[i]);
     const bool alone = !names[i].empty() && std::ranges::count(names, names[i]) == 1;
     column.header =
         alone && printable(names[i], names[i].size()) == names[i] ? names[i] : "#" + std::to_string(i + 1);
+    if (column.words.number != '\0') numbers[column.words.stem].insert(column.words.number);
+  }
+  // Numbers count the axes from 0 or 1, unless there are more than three.
+  for (TableColumn& column : columns) {
+    Words& words = column.words;
+    if (words.number == '\0' || !words.axis.empty()) continue;
+    const std::set<char>& all = numbers[words.stem];
+    const char first = *all.begin() == '0' ? '0' : '1';
+    if (*all.rbegin() - first <= 2) words.axis = axis_name(static_cast<std::size_t>(words.number - first));
   }
 }
 

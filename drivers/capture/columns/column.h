@@ -24,6 +24,7 @@ struct Words {
 
   std::vector<std::string> words;  // lower case, without axis, unit and index
   std::string axis;                // "x", "y", "z", or ""
+  char number = '\0';              // at the end of the name, if any, which may count axes
   std::string stem;                // words separated by blanks: equal for all axes of a sensor
   std::string text;                // the name without its unit, as letters, digits and "_"
 

@@ -31,6 +31,9 @@ struct CsvColumn {
   [[nodiscard]] UnitConversion conversion() const;
 };
 
+// Time in which the increments in other columns turned; without it they are of the time between rows.
+inline constexpr const char* kInterval = "interval_s";
+
 struct CsvTime {
   std::string header = "time_s";  // "sec+nsec" or "date+time": two columns form one time
   // Unit, "ms" or "100us"; for dates like 5/6/2026 the order, "d/m/y" or "m/d/y"; "": seconds, or month

@@ -121,6 +121,18 @@ void name_axes(Rates& three) {
   for (std::size_t i = 0; i < 3; ++i) three[i].axis = axis_name(i);
 }
 
+// omega_p, omega_q, omega_r; gyro_fwd, gyro_right, gyro_down: perhaps the axes of one sensor.
+bool differ_in_a_word(const TableSample& table, const Rates& three) {
+  std::set<std::size_t> places;
+  const auto words_of = [&](std::size_t i) { return table.columns[three[i].place].words.words; };
+  for (const std::size_t other : {1U, 2U}) {
+    const auto one = words_of(0), another = words_of(other);
+    for (std::size_t i = 0; i < std::max(one.size(), another.size()); ++i)
+      if (i >= one.size() || i >= another.size() || one[i] != another[i]) places.insert(i);
+  }
+  return places.size() == 1;
+}
+
 // Columns whose names differ only in the axis are of one sensor. Returns the one with the most axes, or all with that
 // number.
 std::vector<Rates> sensors_by_name(const TableSample& table, bool references) {
@@ -165,6 +177,10 @@ std::vector<Rates> sensors_by_name(const TableSample& table, bool references) {
       for (const RateCandidate& column : columns) choices.push_back({column});
   }
   std::ranges::sort(choices, {}, [](const Rates& choice) { return choice[0].place; });
+  if (choices.size() == 3 && together.size() == 3 && differ_in_a_word(table, together)) {
+    name_axes(together);
+    choices.insert(choices.begin(), together);
+  }
   return choices;
 }
 
@@ -185,7 +201,10 @@ std::vector<Rates> sensors_by_place(const TableSample& table, const std::optiona
     const TableColumn& column = table.columns[i];
     const bool of_time =
         time && ("+" + time->header + "+").find("+" + column.name + "+") != std::string::npos;
-    if (!of_time && column.varies() && column.name != counted) found.push_back({i});
+    // A position or a pressure changes by less than a millionth from row to row.
+    const bool changes = column.varies() && scatter(column) > 1e-6 * std::abs(column.values[0]) *
+                                                                  static_cast<double>(column.values.size());
+    if (!of_time && changes && column.name != counted) found.push_back({i});
   }
   if (found.empty()) return {};
   if (found.size() < 3) return {{found[0]}};

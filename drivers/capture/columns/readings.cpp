@@ -2,9 +2,11 @@
 #include "drivers/capture/columns/readings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/times/row_sink.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostWays = 4;    // limit for messages
 constexpr std::size_t kMostShown = 16;  // columns; limit for messages
+constexpr double kMostInterval = 1.5;   // of an increment, in steps of the rows, which are uneven
 
 std::string capture_name(const RateCandidate& column) {
   return std::string(column.reference ? "reference_rate" : "rate") +
@@ -83,6 +86,8 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
     add_others(table, rates, columns);
     // Limits the line; the user can ask for more columns.
     if (columns.size() <= kMostShown) shown = columns.size();
+    // Not shown, because its unit is that of rows whose time is chosen.
+    if (const auto interval = interval_of(table, way.layout)) columns.push_back(*interval);
   }
   for (std::size_t i = 0; i < shown; ++i) add(option_for(columns[i], columns[i].unit));
   return way;
@@ -190,6 +195,43 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
     return others;
   }
   return {};
+}
+
+std::optional<CsvColumn> interval_of(const TableSample& table, const CsvLayout& layout) {
+  const TableColumn* increment = nullptr;
+  double rows_s = layout.sample_rate_hz ? 1.0 / *layout.sample_rate_hz : HUGE_VAL;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    const auto is_here = [&](const std::string& wanted) {
+      return wanted == column.header || wanted == "#" + std::to_string(i + 1);
+    };
+    if (layout.time && is_here(layout.time->header) && column.values.size() > 1)
+      rows_s = median_step_s(column.values) * layout.time->unit_s();
+    for (const CsvColumn& chosen : layout.columns) {
+      if (chosen.name == kInterval) return std::nullopt;
+      if (chosen.angle_rad() && chosen.unit.ends_with("/sample") && is_here(chosen.header))
+        increment = &column;
+    }
+  }
+  if (increment == nullptr) return std::nullopt;
+  const Words& turned = increment->words;
+  for (const TableColumn& column : table.columns) {
+    const Words& words = column.words;
+    // ArduPilot's IMT has DelaT for DelAX.
+    const bool named =
+        (turned.text.size() > 2 && words.text == turned.text.substr(0, turned.text.size() - 1) + "t") ||
+        ((words.has("dt") || words.has("interval")) &&
+         std::ranges::all_of(words.words, [&](const std::string& word) {
+           return word == "dt" || word == "interval" || turned.has(word);
+         }));
+    if (!named || column.values.empty()) continue;
+    std::vector<std::string> units{"s", "ms", "us", "ns"};
+    if (time_unit(column.unit)) units = {column.unit};
+    for (const std::string& unit : units)
+      if (median(column.values) * CsvTime{"", unit}.unit_s() < kMostInterval * rows_s)
+        return CsvColumn{kInterval, column.header, unit};
+  }
+  return std::nullopt;
 }
 
 std::string in_words(const CsvLayout& layout) {

@@ -38,6 +38,10 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked);
 // others. Empty if the names do not identify them.
 std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayout& chosen);
 
+// Time in which the increments of a layout turned, where a column says it ("dt_us", "delta_angle_dt") and the rows are not
+// closer, as interval_s; nullopt: they are of the time between rows.
+std::optional<CsvColumn> interval_of(const TableSample& table, const CsvLayout& layout);
+
 // "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s": how a file is read.
 std::string in_words(const CsvLayout& layout);
 

@@ -81,10 +81,23 @@ std::string remark_on(const CsvTime& time, double step) {
   return remark.str() + ")";
 }
 
+// Days of this century as spreadsheets, MATLAB and astronomers count them.
+bool may_be_day(double day) {
+  constexpr double kCentury_d = 36'525.0;
+  return std::ranges::any_of(std::array{36'526.0, 730'486.0, 2'451'544.5},
+                             [=](double day_2000) { return day >= day_2000 && day < day_2000 + kCentury_d; });
+}
+
 // The unit in which the values are times since 1970, or the only one with a plausible sample rate; else all in which
-// they can be times.
-void settle_unit(TimeCandidate& found, const std::vector<double>& values) {
-  const std::vector<std::string> all{"s", "ms", "us", "ns", "d"};
+// they can be times. False: no unit has a plausible rate.
+bool settle_unit(TimeCandidate& found, const TableColumn& column) {
+  const std::vector<double>& values = column.values;
+  std::vector<std::string> all{"s", "ms", "us", "ns"};
+  if (!values.empty() && may_be_day(values.front())) all.emplace_back("d");
+  // Whole seconds of a gyro increase by one at most.
+  const auto leaps = [](double before, double now) { return now - before > 1.0; };
+  if (column.is_whole() && std::ranges::adjacent_find(values, leaps) != values.end())
+    std::rotate(all.begin(), all.begin() + 1, all.end());
   const double step = values.size() < 2 ? 0.0 : mean_step(values);
   for (const std::string& unit : all) {
     const double unit_s = seconds_a(unit), rate_hz = 1.0 / (step * unit_s);
@@ -95,19 +108,21 @@ void settle_unit(TimeCandidate& found, const std::vector<double>& values) {
       found.units = {unit};
       found.time.unit = unit;
       if (rate_hz < kSlowest_hz) found.time.remark = remark_on(found.time, step);
-      return;
+      return true;
     }
     if (rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz) found.units.push_back(unit);
   }
   if (found.units.size() == 1) {
     found.time.unit = found.units.front();
     found.time.remark = remark_on(found.time, step);
-    return;
+    return true;
   }
+  const bool plausible = !found.units.empty();
   found.units = all;
   keep_measurable(found.units, values, [](const std::string& unit) {
     return measurable_in_file(CsvTime{"", unit});
   });
+  return plausible;
 }
 
 // Likelihood from its name that a column is the rows' time; 0: none.
@@ -182,8 +197,7 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
   if (!out.time.unit.empty()) return out;
   if (column.counts_rows()) return std::nullopt;
   out.units.clear();
-  settle_unit(out, column.values);
-  return out;
+  return settle_unit(out, column) || table.named ? std::optional(out) : std::nullopt;
 }
 
 std::vector<std::string> words_of(const std::string& name) {

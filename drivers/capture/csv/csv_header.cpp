@@ -65,8 +65,11 @@ class Chooser {
     const std::size_t number =
         count == 0 && is_number_of_column(wanted) ? std::strtoul(wanted.c_str() + 1, nullptr, 10) : 0;
     if (number >= 1 && number <= header_.cells.size()) return number - 1;
-    fail((count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
-         listed(header_.cells));
+    std::string numbers;
+    for (std::size_t i = 0; i < header_.cells.size(); ++i)
+      if (header_.cells[i] == wanted) numbers += ", #" + std::to_string(i + 1);
+    fail((count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + numbers +
+         ", the header has " + listed(header_.cells));
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
@@ -172,10 +175,21 @@ class Chooser {
     } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
       take_reading();
     }
-    if (layout.sample_rate_hz)
+    if (layout.sample_rate_hz) {
       layout.time.reset();
-    else
+      // Where a counter of the rows jumps, rows are missing.
+      const auto& columns = header_.sample.columns;
+      const auto count = std::ranges::find_if(
+          columns, [](const TableColumn& column) { return column.counts_rows() && !time_unit(column.unit); });
+      if (count != columns.end()) header_.time_place = static_cast<std::size_t>(count - columns.begin());
+    } else {
       take_time(*layout.time);
+    }
+    if (const auto interval = interval_of(header_.sample, layout)) {
+      header_.notices.push_back("each increment is of its own interval: " +
+                                option_for(*interval, interval->unit));
+      layout.columns.push_back(*interval);
+    }
     if (layout.other_rates && !named_)
       for (const CsvColumn& other : rates_not_chosen(header_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
@@ -234,8 +248,10 @@ class Chooser {
                            column.words.have(Role::time);
       if (is_read || is_time || !column.is_numeric() || column.name == count) continue;
       left.push_back(column.header);
-      if (!column.words.have(Role::truth) || !angle_unit(column.unit, true, false)) continue;
       const CsvColumn reference{"reference_" + reading.layout.columns.front().name, column.header, ""};
+      const bool has_one = std::ranges::any_of(
+          reading.layout.columns, [&](const CsvColumn& chosen) { return chosen.name == reference.name; });
+      if (has_one || !column.words.have(Role::truth) || !angle_unit(column.unit, true, false)) continue;
       rate = "; as the true rate: " + reading.options + " " + option_for(reference, column.unit);
     }
     const std::size_t named = std::min<std::size_t>(left.size(), 6), more = left.size() - named;

@@ -48,6 +48,9 @@ class CsvRows {
       notes_.notice(0, std::to_string(so_far_.untimed) + " rows without " +
                            in_quotes(header_.cells[header_.time_place]) +
                            " are of another sensor and dropped");
+    if (so_far_.missing > 0)
+      notes_.notice(0, "of the rows that " + in_quotes(header_.cells[header_.time_place]) + " counts " +
+                           std::to_string(so_far_.missing) + " are missing: gaps in time");
     checks_->finish(impossible_);
     return std::move(notes_);
   }
@@ -80,7 +83,7 @@ class CsvRows {
     Lines lines(text);
     for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
     so_far_.lines = has_lines_ ? lines.number() : 0;
-    for (const std::string& comment : header_.sample.comments) notes_.comments += comment + '\n';
+    for (const std::string& comment : header_.sample.comments) keep_comments(comment + '\n');
     notes_.header_line = so_far_.lines;
     for (const std::string& notice : header_.notices) notes_.notice(0, notice);
     impossible_.resize(header_.columns.size());
@@ -127,7 +130,7 @@ class CsvRows {
     piece.parsed.get();
     if (piece.too_long.count > 0)
       refuse_long_line(path_, so_far_.lines + piece.too_long.line, piece.too_long.first);
-    notes_.comments += piece.comments;
+    keep_comments(piece.comments);
     for (std::size_t c = 0; c < impossible_.size(); ++c)
       impossible_[c].append(piece.impossible[c], so_far_.lines);
     damaged_.append(piece.damaged, so_far_.lines);
@@ -142,10 +145,37 @@ class CsvRows {
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
     if (rows.size() == 0) return;
-    if (header_.layout.sample_rate_hz)
-      for (double& time : rows.time_s)
-        time = (static_cast<double>(places) + time) / *header_.layout.sample_rate_hz;
+    if (header_.layout.sample_rate_hz) {
+      if (header_.time_place != CsvHeader::kNone)
+        places_by_counter(rows);
+      else
+        for (double& time : rows.time_s) time += static_cast<double>(places);
+      for (double& time : rows.time_s) time /= *header_.layout.sample_rate_hz;
+    }
     checks_->take(rows);
+  }
+
+  // Counts are times until here. One that does not increase rolled over, was repeated, or is a fault, as one that the next
+  // row contradicts.
+  void places_by_counter(RowBlock& rows) {
+    rows.origin = {};
+    if (so_far_.place < 0.0) so_far_.count = rows.time_s[0] - 1.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double count = rows.time_s[i], step = count - so_far_.count;
+      const double next = i + 1 < rows.size() ? rows.time_s[i + 1] : -1.0;
+      const bool fault = next > so_far_.count && (count >= next || step <= 0.0);
+      const bool jumps = step > 1.0 && !fault;
+      so_far_.missing += jumps ? static_cast<std::size_t>(step) - 1 : 0;
+      so_far_.count = fault ? so_far_.count + 1.0 : count;
+      rows.time_s[i] = so_far_.place += jumps ? step : 1.0;
+    }
+  }
+
+  void keep_comments(std::string_view comments) {
+    const std::string_view kept = comments.substr(0, kMostComments - notes_.comments.size());
+    notes_.comments += kept.substr(0, kept.rfind('\n') + 1);
+    if (kept.size() < comments.size() && !std::exchange(so_far_.too_many_comments, true))
+      notes_.notice(0, "of the comments the first " + std::to_string(kMostComments) + " bytes are kept");
   }
 
   // An incomplete last line is reported separately.
@@ -173,6 +203,9 @@ class CsvRows {
   Fault damaged_, unended_;
   struct Counts {
     std::size_t lines = 0, untimed = 0, places = 0;
+    bool too_many_comments = false;
+    double count = 0.0, place = -1.0;  // of the last row, if a counter says where rows are missing
+    std::size_t missing = 0;
   } so_far_;
   std::optional<TimeStamps> stamps_;  // set by the first row
 };

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::string_view kArrow = " -> ";
 constexpr const char* kStampName = "stamp_time";
-constexpr std::size_t kAlike = 3;  // fewest lines of one form in the file's beginning
+constexpr std::size_t kLongestDate = 64;  // bytes; a bound keeps the cost of a line without blanks linear
+constexpr std::size_t kAlike = 3;         // fewest lines of one form in the file's beginning
 
 bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -95,11 +96,12 @@ std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
   if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
   std::string_view rest = line.substr(at);
-  const std::string_view word = rest.substr(0, rest.find_first_of(",;| \t\"}])"));
+  const std::string_view near = rest.substr(0, kLongestDate);
+  const std::string_view word = near.substr(0, near.find_first_of(",;| \t\"}])"));
   if (is_date(word)) return at + word.size();
   if (rest.starts_with("0x") || rest.starts_with("0b")) return at;
   if (rest.starts_with('+')) rest.remove_prefix(1);
-  const std::size_t digit = rest.find_first_not_of("-.");
+  const std::size_t digit = rest.substr(0, 4).find_first_not_of("-.");
   if (digit > 2 || !is_decimal(rest[digit])) return at;  // excludes "nan" and "inf"
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.begin(), rest.end(), value);

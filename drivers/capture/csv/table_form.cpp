@@ -19,6 +19,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostAbove = 1000;  // lines before the first row
+constexpr std::ptrdiff_t kMostNameLines = 3;
 
 // Column names that start with a capture's time, with any separator.
 bool is_capture_header(std::string_view line) {
@@ -126,11 +127,10 @@ std::vector<std::string> joined(const std::vector<std::string>& above, std::vect
 // Up to three lines above the rows: names, and a row of units. Duplicate names are completed by the line
 // above, which may also contain the gyro's name.
 std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& grid) {
-  constexpr std::size_t kMostNameLines = 3;
   const std::size_t first = *grid.first();
   const Row& row = grid.rows()[first];
   std::vector<std::vector<std::string>> above;  // upwards
-  for (std::size_t back = 1; back <= std::min(first, kMostNameLines); ++back) {
+  for (std::size_t back = 1; back <= std::min<std::size_t>(first, kMostNameLines); ++back) {
     above.push_back(names_in(lines[first - back].text, grid.separator(), row));
     // Above a row of units, names may be numbers.
     const bool names =
@@ -171,12 +171,21 @@ std::vector<Line> first_lines(std::string_view text, const std::string& path) {
   Lines lines(text);
   std::vector<Line> out;
   std::string_view line;
-  std::size_t plain = 0;
+  std::size_t plain = 0, comments = 0;  // lines, and bytes that are kept
   while (plain < kMostAbove + Grid::kSampleRows && lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
     if (trimmed(line).empty()) continue;
     out.push_back({line, lines.number()});
-    plain += is_comment(line) ? 0 : 1;
+    if (!is_comment(line)) {
+      ++plain;
+      continue;
+    }
+    comments += text_of_comment(line).size() + 1;
+    if (std::ssize(out) <= kMostNameLines) continue;
+    // Of more than are reported as too many only the last ones are kept, which may be names.
+    const auto old = out.end() - kMostNameLines - 1;
+    const std::size_t size = text_of_comment(old->text).size() + 1;
+    if (is_comment(old->text) && comments > 2 * kMostComments + size) comments -= size, out.erase(old);
   }
   return out;
 }
@@ -253,6 +262,18 @@ Notation notation_of(const Grid& grid) {
           by.thousands == '\0')
         by.thousands = mark_of_thousands(cell, '\0');
   return by;
+}
+
+// Columns of VectorNav's ASCII sentences (VN-100 User Manual, asynchronous outputs); empty for other rows.
+std::vector<std::string> names_by_sentence(const std::vector<std::string>& row) {
+  std::vector<std::string> names{"sentence"};
+  const auto add = [&](std::initializer_list<std::string> more) { names.insert(names.end(), more); };
+  if (row[0] == "$VNYMR") add({"yaw_deg", "pitch_deg", "roll_deg"});
+  if (names.size() == 1 && row[0] != "$VNIMU") return {};
+  add({"mag_x_gauss", "mag_y_gauss", "mag_z_gauss", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2",
+       "gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
+  if (row[0] == "$VNIMU") add({"temperature_degC", "pressure_kPa"});
+  return names.size() == row.size() ? names : std::vector<std::string>();
 }
 
 // Cells of the first rows, by column.
@@ -332,9 +353,10 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   if (!headed && given.empty() && grid.first() && layout.only_header.empty())
     headed = choose_kind(form.layout, lines, grid) && take_header(lines, grid, layout, units, form);
   if (!headed && grid.first()) {
-    sample.named = !given.empty();
     std::vector<std::string> names = given;
-    for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
+    if (given.empty()) names = names_by_sentence(grid.rows()[*grid.first()].cells);
+    sample.named = !names.empty();
+    for (std::size_t i = 0; !sample.named && i < grid.width(); ++i)
       names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
     sample.set(names, {}, first_cells(grid, form.notation, *grid.first(), names.size()));
@@ -354,7 +376,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     const Row& row = grid.rows()[i];
     if (line.number > form.last_line || (headed && line.number == form.header_line)) break;
     if (headed || row.comment || row.values < row.cells.size())
-      sample.comments.emplace_back(row.comment ? trimmed(trimmed(line.text).substr(1)) : trimmed(line.text));
+      sample.comments.emplace_back(row.comment ? text_of_comment(line.text) : trimmed(line.text));
   }
   return form;
 }

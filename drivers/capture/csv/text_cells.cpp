@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +20,7 @@ constexpr std::size_t kRunOfRows = 3;  // consecutive rows that make a table, if
 Row row_of(std::string_view line, char separator) {
   Row row;
   row.comment = is_comment(line);
+  if (row.comment) return row;
   row.cells = cells_of(line, separator);
   row.open = separator != ' ' && trimmed(line).ends_with(separator);
   for (const std::string& cell : row.cells) {
@@ -86,7 +88,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   for (;;) {
     const std::size_t end = cell_end(line, separator);
     std::string& cell = cells.emplace_back(unquoted(line.substr(0, end)));
-    for (std::size_t at = 0; (at = cell.find("\"\"", at)) != std::string::npos; ++at) cell.erase(at, 1);
+    boost::algorithm::replace_all(cell, "\"\"", "\"");
     if (end == line.size()) break;
     line.remove_prefix(end + 1);
     while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);

@@ -38,6 +38,11 @@ class Lines {
 // Removes a comment mark: "#", "%", "//".
 [[nodiscard]] std::string_view without_mark(std::string_view line);
 [[nodiscard]] inline bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); }
+[[nodiscard]] inline std::string_view text_of_comment(std::string_view line) {
+  return trimmed(trimmed(line).substr(1));
+}
+// Bytes of comments that are kept, because a file may consist of them.
+inline constexpr std::size_t kMostComments = std::size_t{256} << 10U;
 // Missing values of R, pandas, databases, spreadsheets, and "-1.#IND" of Microsoft's C library.
 [[nodiscard]] bool is_no_number(std::string_view cell);
 // True for a number or date in the notation that goes with the separator.
@@ -48,7 +53,7 @@ struct Line {
   std::size_t number = 0;
 };
 
-// A line split by one separator.
+// A line split by one separator; a comment has no cells.
 struct Row {
   std::vector<std::string> cells;
   std::size_t values = 0, empty = 0;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """One impossible value among thousands, in every column and for every command that reads: each command ends in time, all its numbers
-are finite, and the result is that of a missing cell. Oracle: the same capture without the cell.
+are finite, and the result is that of a missing cell. Oracle: the same capture without the cell. The same for a long line.
 
 usage: huge.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -63,6 +63,16 @@ class Checks:
         assert found.keys() == expected.keys(), f"{command}, {text} in {column}: other keys than with the cell empty"
         for path, value in expected.items():
             assert math.isclose(found[path], value, rel_tol=1e-9, abs_tol=1e-300), f"{command}, {text} in {column}: {path} is {found[path]}, expected {value}"
+
+    def check_a_long_line_costs_no_more_than_its_length(self):
+        """As of XML or base64 in one line, above the header, among the rows, and longer than a line may be."""
+        path = self.folder / "line.csv"
+        for mark in ("-", '"', "{", "2026-", "-.", ' "'):
+            for size in (900_000, 1_100_000):
+                line = mark * (size // len(mark))
+                path.write_text("\n".join(["# " + line, "time_s,rate_radps", "0,0", line, *map("{0},0".format, range(1, 200))]) + "\n")
+                read = ran("convert", path, self.folder / "line_read.csv")
+                assert read.returncode == (0 if size < 2**20 else 1), (mark, size, read.stderr[:200])
 
     def check_one_cell(self):
         """A huge value has the effect of an empty cell."""

@@ -99,6 +99,79 @@ TEST(CsvLayout, AnAngleIsDividedByTheTimeThatItTook) {
   }
 }
 
+// Xsens MT export: 500 packets are lost, later two. The counter is of 16 bits, and a damaged line and a wrong count cost
+// no time.
+TEST(CsvLayout, AJumpOfTheCounterOfRowsIsAGap) {
+  CsvLayout rate;
+  rate.sample_rate_hz = 100;
+  rate.columns = {CsvColumn::parse("rate_x_radps=Gyr_X:rad/s")};
+  std::string text = "PacketCounter,Gyr_X\n";
+  for (int i = 0; i < 2000; ++i)
+    if (i < 1000 || (i >= 1500 && i != 1700 && i != 1701))
+      text += std::to_string(i == 300 ? 9999 : (64000 + i) % 65536) + (i == 200 ? ",??\n" : ",0.1\n");
+  const Capture got = parse_capture(text, "a.csv", rate);
+  ASSERT_EQ(got.size(), 1497U);
+  EXPECT_EQ(got.origin.s, 0);
+  std::size_t row = 0;
+  for (int i = 0; i < 2000; ++i)
+    if (i != 200 && (i < 1000 || (i >= 1500 && i != 1700 && i != 1701))) {
+      ASSERT_NEAR(got.time_s[row++], 0.01 * i, 1e-9) << i;
+    }
+  EXPECT_EQ(got.notices, std::vector<std::string>{
+                             "a.csv: of the rows that 'PacketCounter' counts 503 are missing: gaps in time"});
+}
+
+// VMU931: whole milliseconds, of which some stand twice and some are missing, are no seconds.
+TEST(CsvLayout, WholeSecondsIncreaseByOneAtMost) {
+  std::string text = "Time stamp,gyro_x\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(156496 + i + (i % 4 == 2 ? 1 : 0)) + ",0.00" + std::to_string(i % 7) + "\n";
+  const std::string said = refusal_of(text);
+  EXPECT_TRUE(test::has(said, "--time 'Time stamp:ms'")) << said;
+  EXPECT_TRUE(test::has(said, "in the place of ms: us, ns, s;")) << said;
+}
+
+// A second reference is only listed, a set point is no reference, and columns of one name are told by their numbers.
+TEST(CsvLayout, OneReferenceIsOffered) {
+  const auto notices = [](const std::string& header) {
+    return parse_capture(rows_of(header, "0.{i},{x},{x},{y}"), "a.csv").notices.back();
+  };
+  EXPECT_EQ(notices("time_s,gyro_x_dps,gt_rate_x_dps,table_rate_x_dps\n"),
+            "a.csv: not read: 'table_rate_x_dps'");
+  EXPECT_EQ(notices("time_s,gyro_x_dps,rate_x_desired_dps,rate_x_cmd_dps\n"),
+            "a.csv: not read: 'rate_x_desired_dps', 'rate_x_cmd_dps'");
+  CsvLayout given;
+  given.time = CsvTime::parse("t:s");
+  given.columns = {CsvColumn::parse("rate_radps=x:rad/s")};
+  EXPECT_EQ(refusal_of("t,x,y,x\n0,1,1,1\n1,1,1,1\n", given),
+            "a.csv:1: more than one column 'x', #2, #4, the header has 't', 'x', 'y', 'x'");
+}
+
+// vehicle_imu of PX4, thinned out to 2 Hz, and loggers that name the unit, or none: 1 mrad in 4 ms each. An interval that
+// is longer than the rows are apart is of something else.
+TEST(CsvLayout, AnIncrementIsOfTheIntervalInItsRow) {
+  for (const auto& [header, interval, chosen, rate] :
+       std::initializer_list<std::tuple<const char*, const char*, CsvLayout, double>>{
+           {"timestamp,delta_angle[0],delta_velocity_dt,delta_angle_dt", "8000,4000", {}, 0.25},
+           {"timestamp_us,dtheta_x_rad,n,dt_s", "1,0.004", {}, 0.25},
+           {"t,DelAX,DelvT,DelaT", "0.008,0.004", layout({"rate_x_radps=DelAX:rad/sample"}, "t:us"), 0.25},
+           {"t,a,b,dt", "1,4000", layout({"rate_x_radps=#2:rad/sample", "interval_s=dt:us"}, "t:us"), 0.25},
+           {"timestamp_us,dtheta_x_rad,n,dt_s", "1,4", {}, 0.002}}) {
+    std::string text = std::string(header) + "\n";
+    for (std::int64_t i = 0; i < 42; ++i)
+      text += std::to_string(1'710'773'350'710'000 + 500'000 * i) + ",0.001," +
+              (i < 40    ? interval
+               : i == 40 ? "1,"
+                         : "1,0") +
+              "\n";
+    const Capture got = parse_capture(text, "a.csv", chosen);
+    const std::string said = got.notices.empty() ? "" : got.notices[0];
+    EXPECT_NEAR(got.rate_radps.at(0).at(7), rate, 1e-9 * rate) << header << said;
+    EXPECT_EQ(test::has(said, "interval"), rate == 0.25 && chosen.columns.size() < 2) << said;
+    EXPECT_EQ(std::isnan(got.rate_radps[0][40]) && std::isnan(got.rate_radps[0][41]), rate == 0.25);
+  }
+}
+
 TEST(CsvLayout, IncrementsAreTheTurnWithinAPeriod) {
   // 0.36 arcsec in 10 ms are 36 arcsec/s: behind a hole as well, and in a row that came late.
   const Capture got =
@@ -145,7 +218,7 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(refusal_of("t,u,g\n0,1,2\n1,2,3\n", layout({"rate_radps=#6:deg/s"})),
             "a.csv:1: no column '#6', the header has 't', 'u', 'g'");
   EXPECT_EQ(refusal_of("t,w,w\n0,1,1\n", by),
-            "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
+            "a.csv:1: more than one column 'w', #2, #3, the header has 't', 'w', 'w'");
   EXPECT_EQ(refusal_of("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
   EXPECT_EQ(refusal_of("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");

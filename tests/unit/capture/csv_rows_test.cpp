@@ -168,6 +168,23 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   }
 }
 
+// Above the table, where the last may be names, and between the rows.
+TEST(CsvRows, AFileOfCommentsNeedsLittleMemory) {
+  std::string comments;
+  for (int i = 0; i < 300'000; ++i) comments += "#x\n";
+  for (const std::string& text : {"# first\n" + comments + "#time_s,rate_radps\n0,0\n1,0\n",
+                                  "# first\ntime_s,rate_radps\n0,0\n" + comments + "1,0\n"})
+    for (const std::size_t piece : {std::size_t{4096}, kWhole}) {
+      const Reading found = in_pieces(text, piece);
+      EXPECT_EQ(found.refused, "");
+      EXPECT_EQ(found.time_s.size(), 2U);
+      EXPECT_EQ(found.line_of_row(1), static_cast<std::size_t>(std::ranges::count(text, '\n')));
+      EXPECT_TRUE(found.comments.starts_with("first\n"));
+      EXPECT_LE(found.comments.size(), std::size_t{256} << 10U);
+      EXPECT_EQ(count_of(found.notices, "a.csv: of the comments the first 262144 bytes are kept"), 1);
+    }
+}
+
 TEST(CsvRows, SeparatorsThatAreBlanksCountAsSeparators) {
   CsvLayout layout;
   layout.separator = '\t';

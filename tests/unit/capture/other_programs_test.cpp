@@ -6,29 +6,6 @@
 namespace ifog {
 namespace {
 
-// A row for each of `rows`: what stands before, between and behind the rates, {i} being the row's number and
-// {x}, {y}, {z} white noise of 0.001.
-std::string rows_of(const std::string& head, const std::string& form, int rows = 40) {
-  std::string text = head;
-  std::uint32_t dice = 1;
-  for (int i = 0; i < rows; ++i) {
-    std::string row = form;
-    const auto put = [&row](const std::string& name, const std::string& value) {
-      for (std::size_t at; (at = row.find(name)) != std::string::npos;) row.replace(at, name.size(), value);
-    };
-    for (const char* axis : {"{x}", "{y}", "{z}"}) {
-      dice = dice * 1664525U + 1013904223U;
-      put(axis, std::to_string(1e-3 * (static_cast<double>(dice >> 16U) / 32768.0 - 1.0)));
-    }
-    put("{count}", std::to_string(static_cast<int>(dice >> 20U) - 2048));
-    put("{angle}", std::to_string(3.0 + 1e-3 * i));
-    put("{digit}", std::to_string(7 * i % 10));
-    put("{i}", std::to_string(100 + i));
-    text += row + "\n";
-  }
-  return text;
-}
-
 TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
   struct Case {
     std::string text;
@@ -63,13 +40,12 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
         "in the place of rad/s: deg/s, deg/h, rad/sample, deg/sample, rad, deg"}},
       // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
       {rows_of("", "$VNIMU,-0.0350,+0.4222,-0.6643,-0.015,+0.019,+9.80{digit},{x},{y},{z},+20.7,+84.322*00"),
-       {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
-        "--column 'rate_z_radps=#10:rad/s'; in"}},
+       {"to read it: --sample-rate HZ --column rate_x_radps=gyro_x_radps:radps --column "
+        "rate_y_radps=gyro_y_radps:radps --column rate_z_radps=gyro_z_radps:radps --column mag_x"}},
       // The same, $VNYMR: angles, magnetic field, acceleration, rates, which a checksum follows.
       {rows_of("",
                "$VNYMR,-165.9,-037.2,+001.2,+0.289,+0.070,+0.748,-05.96,-00.18,-07.7{digit},{x},{y},{z}*69"),
-       {"to read it: --sample-rate HZ --column 'rate_x_radps=#11:rad/s' --column 'rate_y_radps=#12:rad/s' "
-        "--column 'rate_z_radps=#13:rad/s'; in"}},
+       {"a.csv:1: no time column; to read it: --sample-rate HZ --column rate_x_radps=gyro_x_radps:radps"}},
       // A reference of one axis under the capture's name.
       {rows_of("t_s,rate_radps,reference_rate_radps\n", "0.{i},{x},{y}"),
        {"reference_rate 'reference_rate_radps' in radps"}},
@@ -120,6 +96,36 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // Analog Devices, ADIS16495 data logger: registers.
       {rows_of("Timestamp,X_GYRO_OUT\n", "0.{i},{count}"),
        {"whole numbers are often counts", "--column rate_x_radps=X_GYRO_OUT:0.005deg/s"}},
+      // Axes counted from 1, as in MATLAB and R, or from 0; four numbers are sensors.
+      {rows_of("time_s,gyro1_dps,gyro2_dps,gyro3_dps,acc_1_g\n", "0.{i},{x},{y},{z},1"),
+       {"rate_x 'gyro1_dps' in dps, rate_y 'gyro2_dps' in dps, rate_z 'gyro3_dps' in dps, acc_1"}},
+      {rows_of("t (s),gyro[1] (rad/s),gyro[2] (rad/s),gyro[3] (rad/s)\n", "0.{i},{x},{y},{z}"),
+       {"rate_x 'gyro[1] (rad/s)' in rad/s, rate_y 'gyro[2] (rad/s)' in rad/s, rate_z 'gyro[3] (rad/s)'"}},
+      {rows_of("t,g1,g2,g3\n", "0.{i},{x},{y},{z}"),
+       {"--column rate_x_radps=g1:rad/s --column rate_y_radps=g2:rad/s --column rate_z_radps=g3:rad/s"}},
+      {rows_of("t_s,rate1_dps,rate2_dps\n", "0.{i},{x},{y}"),
+       {"rate_x 'rate1_dps' in dps, rate_y 'rate2_dps'"}},
+      {rows_of("t_s,w0_dps,w1_dps\n", "0.{i},{x},{y}"), {"rate_x 'w0_dps' in dps, rate_y 'w1_dps'"}},
+      {rows_of("t_s,gyro1_dps,gyro2_dps,gyro3_dps,gyro4_dps\n", "0.{i},{x},{y},{z},{x}"),
+       {"more than one column may be the rate; to read it: --time t_s:s --column rate_radps=gyro1_dps:dps; "
+        "or: "
+        "--time t_s:s --column rate_radps=gyro2_dps:dps; or: "}},
+      // KITTI's oxts begins with a latitude, and a filter's output with a number of the row: none is a time in days.
+      {rows_of("", "49.00000{i} 8.4 {x} {y} {z}"),
+       {"no time column; to read it: --sample-rate HZ --column 'rate_x_radps=#3:rad/s'"}},
+      {rows_of("", "{i} -0.00001{i} {x} {y}"),
+       {"no time column, '#1' counts the rows; to read it: --sample-rate"}},
+      // Axes under names of their own are offered in the order of the columns, and one by one.
+      {rows_of("t_s,gyro_fwd_dps,gyro_right_dps,gyro_down_dps\n", "0.{i},{x},{y},{z}"),
+       {"to read it: --time t_s:s --column rate_x_radps=gyro_fwd_dps:dps --column "
+        "rate_y_radps=gyro_right_dps:dps "
+        "--column rate_z_radps=gyro_down_dps:dps; or: --time t_s:s --column rate_radps=gyro_fwd_dps:dps; "
+        "or:"}},
+      {rows_of("t_s,omega_p,omega_q,omega_r\n", "0.{i},{x},{y},{z}"),
+       {"--column rate_z_radps=omega_r:rad/s; or:"}},
+      {rows_of("t_s,GyroA,GyroB,GyroC\n", "0.{i},{x},{y},{z}"), {"--column rate_z_radps=GyroC:rad/s; or:"}},
+      {rows_of("t_s,Axis1 Rate (deg/s),Axis2 Rate (deg/s),Axis3 Rate (deg/s)\n", "0.{i},{x},{y},{z}"),
+       {"--column 'rate_z_radps=Axis3 Rate (deg/s):deg/s'; or:"}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
       // A laboratory's logger: three temperatures below one name, and names of sensors that are switched off.
@@ -214,7 +220,7 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("Time,KX_IMU_ax,IMU_gx,IMU_gy\n", "0.{i},1.0,{x},{y}"),
        {"--time Time:s --column rate_x_radps=IMU_gx:rad/s --column rate_y_radps=IMU_gy:rad/s"}},
       {rows_of("lowG_data.timeStamp_lowG,lowG_data.ax,lowG_data.gx\n", "194{i}000,1.0,{x}"),
-       {"--time lowG_data.timeStamp_lowG:s --column rate_x_radps=lowG_data.gx:rad/s"}},
+       {"--time lowG_data.timeStamp_lowG:ms --column rate_x_radps=lowG_data.gx:rad/s"}},
       // A matrix of MATLAB 7.3: time and rates in one.
       {rows_of("buffer[0],buffer[1],buffer[2],buffer[3]\n", "0.{i},{x},{y},{z}"),
        {"--time 'buffer[0]:s' --column 'rate_x_radps=buffer[1]:rad/s' --column "

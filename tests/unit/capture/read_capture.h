@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -117,6 +118,29 @@ inline Capture parse_capture(std::string_view text, const std::string& path, con
 // What a text is refused with, or "accepted".
 inline std::string refusal_of(const std::string& text, const CsvLayout& layout = {}) {
   return test::refusal([&] { parse_capture(text, "a.csv", layout); });
+}
+
+// A row for each of `rows`: what stands before, between and behind the rates, {i} being the row's number and
+// {x}, {y}, {z} white noise of 0.001.
+inline std::string rows_of(const std::string& head, const std::string& form, int rows = 40) {
+  std::string text = head;
+  std::uint32_t dice = 1;
+  for (int i = 0; i < rows; ++i) {
+    std::string row = form;
+    const auto put = [&row](const std::string& name, const std::string& value) {
+      for (std::size_t at; (at = row.find(name)) != std::string::npos;) row.replace(at, name.size(), value);
+    };
+    for (const char* axis : {"{x}", "{y}", "{z}"}) {
+      dice = dice * 1664525U + 1013904223U;
+      put(axis, std::to_string(1e-3 * (static_cast<double>(dice >> 16U) / 32768.0 - 1.0)));
+    }
+    put("{count}", std::to_string(static_cast<int>(dice >> 20U) - 2048));
+    put("{angle}", std::to_string(3.0 + 1e-3 * i));
+    put("{digit}", std::to_string(7 * i % 10));
+    put("{i}", std::to_string(100 + i));
+    text += row + "\n";
+  }
+  return text;
 }
 
 namespace test {
