@@ -64,7 +64,7 @@ class Checks:
             refused(1, "denoise", source, "--output", self.folder / "never.csv", *options, says=[str(source), "rate_hz"])
         assert not (self.folder / "never.csv").exists()
         ifog("convert", self.one, log, *DBC, "--option", "rate_hz=100")  # of `candump -L`, whose lines have times: they give the rate
-        assert "1000 samples at 100 Hz" in said("denoise", log, "--output", self.folder / "timed.csv", *DBC)
+        assert f"{ROWS} samples at 100 Hz" in said("denoise", log, "--output", self.folder / "timed.csv", *DBC)
 
     def check_no_output_is_another_file_of_the_run(self):
         """By device and inode, so also through symbolic and hard links, and for a file that does not exist yet."""
