@@ -316,7 +316,7 @@ class Checks:
         stuck, full = list(noise), list(noise)
         for at in range(300, 3900, 400):
             stuck[at:at + 12], full[at:at + 12] = [stuck[at]] * 12, [9 * SIGMA_DPS] * 12
-        assert "12 samples, 9 times" in findings("stuck.csv", stuck)["stuck"] and "stuck" not in findings("full.csv", full)
+        assert all("12 samples, 9 times" in findings(f"{name}.csv", rates)["stuck"] for name, rates in (("stuck", stuck), ("full", full)))
         for command, name, lost in (("convert", "stuck", 0), ("denoise", "stuck", 0), ("convert", "full", 0), ("denoise", "full", 108)):
             assert ran(command, self.folder / f"{name}.csv", *["--output"] * (command == "denoise"), self.folder / "passed.csv").returncode == 0, command
             raw = [line.split(",")[1] for line in (self.folder / "passed.csv").read_text().splitlines() if line[:1].isdigit()]
