@@ -198,22 +198,23 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
 }
 
 std::optional<CsvColumn> interval_of(const TableSample& table, const CsvLayout& layout) {
+  const auto column_of = [&](const std::string& header) -> const TableColumn* {
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      if (table.columns[i].header == header || header == "#" + std::to_string(i + 1))
+        return &table.columns[i];
+    return nullptr;
+  };
   const TableColumn* increment = nullptr;
-  double rows_s = layout.sample_rate_hz ? 1.0 / *layout.sample_rate_hz : HUGE_VAL;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const TableColumn& column = table.columns[i];
-    const auto is_here = [&](const std::string& wanted) {
-      return wanted == column.header || wanted == "#" + std::to_string(i + 1);
-    };
-    if (layout.time && is_here(layout.time->header) && column.values.size() > 1)
-      rows_s = median_step_s(column.values) * layout.time->unit_s();
-    for (const CsvColumn& chosen : layout.columns) {
-      if (chosen.name == kInterval) return std::nullopt;
-      if (chosen.angle_rad() && chosen.unit.ends_with("/sample") && is_here(chosen.header))
-        increment = &column;
-    }
+  for (const CsvColumn& chosen : layout.columns) {
+    if (chosen.name == kInterval) return std::nullopt;
+    if (increment == nullptr && chosen.unit.ends_with("/sample") && chosen.angle_rad())
+      increment = column_of(chosen.header);
   }
   if (increment == nullptr) return std::nullopt;
+  double rows_s = layout.sample_rate_hz ? 1.0 / *layout.sample_rate_hz : HUGE_VAL;
+  const TableColumn* const time = layout.time ? column_of(layout.time->header) : nullptr;
+  if (time != nullptr && time->values.size() > 1)
+    rows_s = median_step_s(time->values) * layout.time->unit_s();
   const Words& turned = increment->words;
   for (const TableColumn& column : table.columns) {
     const Words& words = column.words;

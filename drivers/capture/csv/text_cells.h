@@ -42,7 +42,7 @@ class Lines {
   return trimmed(trimmed(line).substr(1));
 }
 // Bytes of comments that are kept, because a file may consist of them.
-inline constexpr std::size_t kMostComments = std::size_t{256} << 10U;
+inline constexpr std::size_t kMostComments = std::size_t{1} << 20U;
 // Missing values of R, pandas, databases, spreadsheets, and "-1.#IND" of Microsoft's C library.
 [[nodiscard]] bool is_no_number(std::string_view cell);
 // True for a number or date in the notation that goes with the separator.
