@@ -242,9 +242,8 @@ std::string StatusReport::unknown_noise() const {
   const bool known = std::ranges::any_of(now_.measurement_noise, [](double noise) { return noise > 0.0; });
   if (known || !samples_.news || samples_.seconds != kPatience) return "";
   return "the noise is not known after a minute, so the rate is published as compensated: that takes rests "
-         "of "
-         "512 samples, 4096 in all; if the sensor never rests, give the model of 'ifog tune' for a recording "
-         "at rest";
+         "of 512 samples, 4096 in all; if the sensor never rests, configure the model of 'ifog tune' for a "
+         "recording at rest";
 }
 
 std::string StatusReport::newly_frozen() const {

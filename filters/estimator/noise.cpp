@@ -21,7 +21,7 @@ SensorNoise::SensorNoise(const FilterSettings& settings, const KnownNoise& known
       white_(settings.measurement_noise / given_),
       learns_walk_(known.learns_walk),
       walk_share_(known.walk_share),
-      louder_(std::max(2.0 * Walk::kStretch, kHigherNoise_s / period_s), false) {
+      in_motion_(std::max(2.0 * Walk::kStretch, kHigherNoise_s / period_s), false) {
   for (std::size_t a = 0; a < axes_; ++a) {
     noise_[a] = Noise(known.share[a] * given_);
     if (known.of_long_means) noise_[a].set_long(noise_[a].known());
@@ -38,8 +38,8 @@ void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
 }
 
 void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept {
-  if (std::exchange(at_rest_, at_rest) != at_rest) (at_rest ? louder_ : walk_).moved();
-  const std::optional<Walk::Found> found = (at_rest ? walk_ : louder_).take(rate, valid);
+  if (std::exchange(at_rest_, at_rest) != at_rest) (at_rest ? in_motion_ : walk_).moved();
+  const std::optional<Walk::Found> found = (at_rest ? walk_ : in_motion_).take(rate, valid);
   if (!found) return;
   const double before = mean_;
   bool other = false;

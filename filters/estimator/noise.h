@@ -126,7 +126,7 @@ class SensorNoise {
   // After missing samples or a change of the averaging time.
   void gap() noexcept {
     walk_.gap();
-    louder_.gap();
+    in_motion_.gap();
   }
 
   // One figure of each axis; 1 for lanes without axis.
@@ -157,7 +157,7 @@ class SensorNoise {
   std::optional<Axes> walk_share_;
   std::array<Noise, kMaxAxes> noise_;
   Lanes share_ = Lanes::Ones();
-  Walk walk_, louder_;  // at rest, and in what appears to be motion
+  Walk walk_, in_motion_;  // at rest, and in what appears to be motion
   bool at_rest_ = true;
 };
 

@@ -69,7 +69,9 @@ double RestFilter::colour_of_sum(double keep, double period_s) const {
   const Eigen::VectorXd shared = model_.colour * model_.h;
   const Eigen::MatrixXd ahead = Eigen::MatrixXd::Identity(n, n) - transition;
   const double later = model_.h.dot(ahead.partialPivLu().solve(transition * shared));
-  return 1.0 + 2.0 * later / (model_.white + model_.h.dot(shared));
+  const double all = model_.white + model_.h.dot(shared);
+  // The colour adds no less than nothing, whatever is rounded.
+  return std::max(1.0 + 2.0 * later / all, model_.white / all);
 }
 
 void RestFilter::restart() noexcept {

@@ -103,13 +103,13 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
   if (++in_piece_ < of_piece_) return {};
-  // What moves more than another piece is no rest.
-  const int louder = against_others();
-  if (louder > 0) {
+  // A piece that moves more than another is no rest.
+  const int compared = against_others();
+  if (compared > 0) {
     moved();
     return {};
   }
-  if (louder < 0) lately_ = {}, in_stretch_ = 0.0;
+  if (compared < 0) lately_ = {}, in_stretch_ = 0.0;
   in_stretch_ += std::exchange(in_piece_, 0.0);
   merge(piece_, 1.0, lately_);
   piece_ = {};

@@ -57,7 +57,7 @@ class Walk {
   };
   using Octaves = std::array<Allan, kMaxAxes>;
 
-  // How the piece compares with the others: 1 if an octave is louder beyond chance, -1 if one is quieter and none louder.
+  // How the piece compares with the others: 1 if the noise of an octave is higher beyond chance, -1 if one is lower and none higher.
   [[nodiscard]] int against_others() const noexcept;
   void add(std::size_t axis, double rate) noexcept;
   static void merge(const Octaves& more, double kept, Octaves& into) noexcept;

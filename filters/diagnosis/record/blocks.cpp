@@ -194,8 +194,11 @@ FineChannel fine_channel(const BlockGrid& grid, const std::vector<StepStarts>& s
   channel.name = name;
   channel.two_valued = two_valued;
   const bool several = grid.fine_s > grid.sample_s;  // samples per step > 1
+  // What is reconstructed from its readings; a rate that is set in two levels is no coarse one.
+  const bool read = !two_valued && !is_reference_rate(name) && axis_of_rate(name).empty();
   for (std::size_t r = 0; r < values.size(); ++r) {
-    const StepMeans steps = step_means(values[r], starts[r], several, two_valued);
+    const StepMeans steps =
+        step_means(values[r], starts[r], several, two_valued, read && is_coarse(values[r]));
     channel.values.insert(channel.values.end(), steps.means.begin(), steps.means.end());
     channel.power.insert(channel.power.end(), steps.power.begin(), steps.power.end());
     channel.read.insert(channel.read.end(), steps.read.begin(), steps.read.end());

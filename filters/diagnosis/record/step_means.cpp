@@ -79,12 +79,12 @@ bool is_coarse(std::span<const double> readings) {
   return median(std::move(changes)) < 1.5 * least;
 }
 
-StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds) {
+StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds,
+                     bool readings) {
   StepMeans out;
   auto& [means, power, read] = out;
   const std::size_t steps = starts.size() - 1;
   std::vector<std::uint8_t> known(steps);
-  const bool coarse = is_coarse(values);
   bool any = false;  // steps before the first value use that value
   double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
@@ -97,7 +97,7 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
       ++count;
     }
     const double mean = count > 0 ? sum / count : 0.0;
-    if (count > 0) held = coarse ? last : mean;
+    if (count > 0) held = readings ? last : mean;
     if (count > 0 && !std::exchange(any, true)) std::ranges::fill(means, held);
     known[k] = count > 0 || (holds && any && starts[k] < starts[k + 1]) ? 1 : 0;
     means.push_back(held);

@@ -18,8 +18,8 @@ std::size_t fine_index(const Record& record, std::size_t i, double fine_s);
 using StepStarts = std::vector<std::size_t>;
 StepStarts step_starts(const Record& record, double fine_s, std::size_t steps);
 
-// True if most readings repeat the one before and most changes are by the least one: the resolution is coarser than what
-// the channel changes by from one to the next. Not finite values are left out.
+// True if most readings equal the previous one and most changes are of one size: the resolution is coarser than the
+// channel's changes from reading to reading. Values that are not finite are ignored.
 bool is_coarse(std::span<const double> readings);
 
 struct StepMeans {
@@ -27,8 +27,9 @@ struct StepMeans {
   std::vector<std::uint8_t> read;    // 0: rows without a value, interpolated between those with one
 };
 
-// Means of a column over each step, of a coarse one its last reading, so that it keeps its levels; linear interpolation where there is no value. holds: a switch, which keeps its value
-// over rows without one.
-StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds);
+// Means of a column over each step; linear interpolation where there is no value. holds: a switch, which keeps its value
+// over rows without one. readings: not means but the last reading of each step, so that a coarse channel keeps its levels.
+StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power, bool holds,
+                     bool readings = false);
 
 }  // namespace ifog

@@ -153,7 +153,7 @@ TEST(Reconstruct, AReadingThatFlipsBetweenTwoDegreesIsKnownToATenth) {
     if (i % kStep == 0) starts.push_back(i);
   }
   starts.push_back(kSamples);
-  const Reconstruction found = reconstruct(step_means(read, starts, false, false).means);
+  const Reconstruction found = reconstruct(step_means(read, starts, false, false, is_coarse(read)).means);
   EXPECT_TRUE(found.smooth);
   EXPECT_LT(rms_difference(found.values, truth), 0.1);
 }
