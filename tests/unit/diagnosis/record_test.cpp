@@ -53,6 +53,24 @@ TEST(Blocks, AreOfTheTrueRateWhereStampsAreRounded) {
   }
 }
 
+// A rate table between two set rates: a step in which it reverses has the mean of both, as the gyro's rate has. A thermometer
+// of two values keeps its levels.
+TEST(Blocks, OnlyAThermometerKeepsItsLevels) {
+  Arrays made(4000);
+  std::vector<double> reference, coarse;
+  for (std::size_t i = 0; i < made.time.size(); ++i) {
+    reference.push_back(i / 101 % 2 == 0 ? 0.1 : -0.1);
+    coarse.push_back(i / 103 % 2 == 0 ? 25.0 : 26.0);
+  }
+  const BlockData data = cut_to_blocks(
+      {made_record("table", made.time, made.rate, {{"temperature_degC", coarse}}, reference)}, 64);
+  const auto between = [](const FineChannel& channel, double low, double high) {
+    return std::ranges::any_of(channel.values, [&](double v) { return v > low + 1e-9 && v < high - 1e-9; });
+  };
+  EXPECT_TRUE(between(data.channels[static_cast<std::size_t>(data.reference)], -0.1, 0.1));
+  EXPECT_FALSE(between(data.channels[0], 25.0, 26.0));
+}
+
 // A day between two minutes, or two of three cells empty: what there is too little of is said.
 TEST(Blocks, TooFewOfThemAreSaid) {
   Arrays hole(1000), empty(6000);
