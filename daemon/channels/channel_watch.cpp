@@ -27,7 +27,7 @@ bool is_absent_bus(const ChannelConfig& channel) {
 }
 
 std::string source_in_words(const ChannelConfig& channel) {
-  if (channel.source == Source::file) return printable(channel.path);
+  if (channel.source == Source::file) return printable(channel.path, kLongestMessage);
   if (channel.source == Source::lcm) return "LCM channel " + in_quotes(channel.lcm_channel);
   return "CAN interface " + in_quotes(channel.interface);
 }

@@ -24,7 +24,7 @@ std::unique_ptr<Recorder> make_recorder(const SensorConfig& sensor, const Config
   if (record.folder.empty()) return nullptr;
   if (std::error_code none;
       std::filesystem::exists(record.folder, none) && !std::filesystem::is_directory(record.folder, none))
-    throw std::runtime_error("sensor.record.folder = \"" + printable(record.folder) +
+    throw std::runtime_error("sensor.record.folder = \"" + printable(record.folder, kLongestMessage) +
                              "\": is no folder, expected one, or a path that is free for it");
   ArchiveLimits limits;
   limits.bytes = record.bytes;

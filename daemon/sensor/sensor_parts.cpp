@@ -126,6 +126,9 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
   ChainSettings out;
   const std::vector<ChannelConfig> outside = outside_channels(sensor);
   out.facts = sensor_facts(description, sensor.nominal_rate_hz, static_cast<int>(outside.size()));
+  const FileSettings& file = sensor.transport.file;
+  if (sensor.transport.kind == Kind::file && file.pace == FileSettings::Pace::recorded)
+    out.facts.speed = file.speed;
   for (std::uint32_t i = 0; i < description.axes; ++i) out.axes.emplace_back(description.axis[i]);
   for (std::uint32_t i = 0; i < description.environments; ++i) {
     out.channels.emplace_back(description.environment[i]);

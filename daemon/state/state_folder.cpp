@@ -32,7 +32,7 @@ std::string state_folder(const std::string& configured) {
 namespace {
 
 std::string cannot(const std::string& folder, const char* what, const std::string& why) {
-  return "daemon.state_folder = \"" + printable(folder) + "\": " + what + ": " + why +
+  return "daemon.state_folder = \"" + printable(folder, kLongestMessage) + "\": " + what + ": " + why +
          ", expected a folder that the daemon may write, or a path that is free for it";
 }
 

@@ -50,7 +50,8 @@ double Incrementer::clock_offset_ppm() const noexcept {
 // Measures the rate of samples by their arrivals, at both ends of the stretch late by up to kLate_s.
 void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) noexcept {
   if (frame.arrival_ns <= 0) return;
-  const double lasts_s = static_cast<double>(ns_between(stretch_.begin_ns, frame.arrival_ns)) * 1e-9;
+  const double lasts_s =
+      static_cast<double>(ns_between(stretch_.begin_ns, frame.arrival_ns)) * 1e-9 * facts_.speed;
   if (stretch_.begin_ns == 0 || now.restarted || now.clock_moved || frame.reopened ||
       lasts_s > kClockMemory_s) {
     stretch_ = {.begin_ns = frame.arrival_ns,
@@ -72,7 +73,7 @@ void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) no
   const double error = lasts_s / (samples * period_s_) - 1.0;
   if (std::abs(error) < kRight || error < kAccelerated)
     stretch_.interval_error = 0.0;
-  else if (std::abs(error) > kRight + kLate_s / lasts_s)
+  else if (std::abs(error) > kRight + kLate_s * facts_.speed / lasts_s)
     stretch_.interval_error = error;
 }
 
@@ -82,7 +83,7 @@ void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) no
 void Incrementer::look_at_clock(const Step& now, double lasts_s) noexcept {
   const double by_clock = stretch_.sum_s / lasts_s;
   const double by_rate = static_cast<double>(stretch_.frames) * period_s_ / lasts_s;
-  const bool off = std::abs(by_clock - 1.0) > kRight + kLate_s / lasts_s &&
+  const bool off = std::abs(by_clock - 1.0) > kRight + kLate_s * facts_.speed / lasts_s &&
                    std::abs(std::log(by_rate)) < 0.5 * std::abs(std::log(by_clock));
   if (!off && 10 * stretch_.by_count <= 9 * stretch_.frames) return;
   refused_clock_ = static_cast<double>(ns_between(stretch_.begin_clock_ns, now.time_ns)) * 1e-9 / lasts_s;

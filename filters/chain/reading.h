@@ -36,6 +36,7 @@ struct SensorFacts {
   int axes = 1;                        // 1 … kMaxAxes
   std::uint32_t sequence_modulus = 0;  // modulus of the device's counter; 0: none
   double nominal_rate_hz = 0.0;        // > 0
+  double speed = 1.0;                  // of arrivals: a recording is replayed at this multiple of its pace
   double angle_wrap_rad = 0.0;         // SensorKind::angle: modulus; 0: does not wrap
   int frame_channels = 0;              // channels 0 … frame_channels − 1 are in the sensor's own frames
   int channels = 0;                    // all of them, ≤ kMaxChannels

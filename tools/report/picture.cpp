@@ -108,7 +108,7 @@ std::string picture_svg(const std::string& title, const std::vector<PictureRow>&
 
 std::string wrong_picture_name(const std::string& path) {
   if (has_ending(path, ".svg") || has_ending(path, ".png") || is_standard_output(path)) return "";
-  return "is " + in_quotes(path) + ", expected a name ending in .svg or .png";
+  return "is " + in_quotes(path, kLongestMessage) + ", expected a name ending in .svg or .png";
 }
 
 void write_picture(const std::string& path, const std::string& svg) {

@@ -70,6 +70,13 @@ class Checks:
         ifog("allan", self.one, "--plot", folder / "UP.PNG")
         assert (folder / "UP.PNG").read_bytes().startswith(b"\x89PNG")
 
+    def check_a_path_is_whole(self):
+        """A folder's name of 120 bytes: what was written can be copied, and what is refused found."""
+        folder = self.folder / ("recordings_of_the_left_wing_" * 4 + "gyro_two")
+        folder.mkdir()
+        assert f"wrote {folder / 'out.csv'}\n" in ran("convert", self.one, folder / "out.csv").stdout
+        refused(2, "convert", self.one, folder / "out.npz", says=[f"'{folder / 'out.npz'}', expected"])
+
     def check_a_format_that_is_not_chosen_by_the_name_refuses_anothers(self):
         """A page in report.pdf, JSON in figures.csv, candump's lines in a CSV."""
         folder = self.folder / "kinds"

@@ -141,6 +141,23 @@ TEST(Rate, ADeviceThatSendsAtAnotherRateThanItShouldIsFound) {
   }
 }
 
+// A candump log of the right device, by the file transport at ten times its pace.
+TEST(Rate, ARecordingThatIsReplayedFasterIsOfTheRightDevice) {
+  for (const Tells tells : {Tells::counter, Tells::counter_and_clock}) {
+    SensorFacts facts = facts_of(tells, 128);
+    facts.speed = 10.0;
+    Incrementer incrementer(facts);
+    Increment increment;
+    for (std::uint64_t n = 0; n < 6000; ++n) {
+      const double at_s = static_cast<double>(n) / kRate_hz;
+      const auto clock_s = tells == Tells::counter_and_clock ? std::optional(at_s) : std::nullopt;
+      ASSERT_TRUE(incrementer.next(reading_at(at_s / facts.speed, n, true, clock_s), increment));
+    }
+    EXPECT_EQ(incrementer.interval_error(), 0.0);
+    EXPECT_FALSE(incrementer.refused_clock());
+  }
+}
+
 // With a clock alone: each of its samples seems to come behind a gap, and only a part of its time is covered.
 TEST(Rate, ADeviceWithAClockAloneThatSendsMoreSlowlyThanItShouldIsFound) {
   for (const double rate_hz : {30.0, 50.0, 60.0, 99.0, 103.0, 180.0}) {

@@ -34,7 +34,7 @@ void add(const std::string& option, const std::string& path, bool written) {
     return (other.written || written) && other.identity == *identity;
   });
   if (same != files.end())
-    throw WrongUsage(option, "is " + in_quotes(path) + ", the file that " + same->option +
+    throw WrongUsage(option, "is " + in_quotes(path, kLongestMessage) + ", the file that " + same->option +
                                  (same->written ? " writes" : " reads") + "; expected another one");
   files.push_back({option, *std::move(identity), written, path});
 }
@@ -61,7 +61,7 @@ void will_write(const std::string& option, const std::string& path,
 std::string written_in_words() {
   std::string words;
   for (const CommandFile& file : files)
-    if (file.written) words += (words.empty() ? "wrote " : ", ") + printable(file.path);
+    if (file.written) words += (words.empty() ? "wrote " : ", ") + printable(file.path, kLongestMessage);
   return words;
 }
 
@@ -80,15 +80,16 @@ void expect_no_other_kind(const std::string& option, const std::string& path,
     return has_ending(name, ending);
   };
   if (std::ranges::any_of(endings, says) || std::none_of(std::begin(kKnown), std::end(kKnown), says)) return;
-  throw WrongUsage(option,
-                   "is " + in_quotes(path) + ", expected a name ending in " + std::string(endings.front()));
+  throw WrongUsage(option, "is " + in_quotes(path, kLongestMessage) + ", expected a name ending in " +
+                               std::string(endings.front()));
 }
 
 void expect_ending(const std::string& option, const std::string& path, bool known,
                    const std::string& expected) {
   if (known || path.empty() || is_standard_output(path) || !file_identity(path)) return;
   if (!std::filesystem::path(path).has_extension()) return;
-  throw WrongUsage(option, "is " + in_quotes(path) + ", expected a name ending in " + expected);
+  throw WrongUsage(option,
+                   "is " + in_quotes(path, kLongestMessage) + ", expected a name ending in " + expected);
 }
 
 }  // namespace ifog::tools

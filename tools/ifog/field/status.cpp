@@ -102,7 +102,8 @@ void say_recorded(const status_t* live, const std::optional<std::string>& record
     say("  recorded: no, a night has nothing to diagnose ([sensor.record] in the configuration)\n");
     return;
   }
-  const std::string where = recordings && !recordings->empty() ? " in " + printable(*recordings) : "";
+  const std::string where =
+      recordings && !recordings->empty() ? " in " + printable(*recordings, kLongestMessage) : "";
   if (live == nullptr)
     say("  recorded:{}\n", where);
   else
@@ -114,8 +115,8 @@ void say_recorded(const status_t* live, const std::optional<std::string>& record
 void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
     say("{}  {}{}{}  {} in, {} published\n", printable(name), state_name(live->state),
-        live->fault.empty() ? "" : ": ", printable(live->fault), in_hertz(live->input_rate_hz),
-        in_hertz(live->output_rate_hz));
+        live->fault.empty() ? "" : ": ", printable(live->fault, kLongestMessage),
+        in_hertz(live->input_rate_hz), in_hertz(live->output_rate_hz));
     say_live(*live);
   } else {
     say("{}  nothing known of now\n", printable(name));

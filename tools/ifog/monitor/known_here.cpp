@@ -57,7 +57,7 @@ void KnownHere::look() {
   for (const SensorConfig& sensor : field_->config()->sensors) {
     KnownSensor& known = sensors_[sensor.lcm_channel().substr(kChannelPrefix.size())];
     known.driver = sensor.driver + ", " + kKinds[static_cast<std::size_t>(sensor.transport.kind)] +
-                   printable(source_of(sensor.transport));
+                   printable(source_of(sensor.transport), kLongestMessage);
     for (const ChannelConfig& channel : sensor.channels)
       if (channel.source != ChannelConfig::Source::frame) known.channels.insert(channel.name);
     // A model that is being exchanged or is not readable is shown by its identity.

@@ -315,7 +315,7 @@ std::vector<ShownLine> view_lines(std::string_view name, const SensorView& senso
   if (known != nullptr && !known->proposal.empty()) add({known->proposal}, Tone::warning);
   if (known != nullptr && style.details) add({"driver " + known->driver});
   if (status == nullptr) return out;
-  if (!status->fault.empty()) add({"fault: " + printable(status->fault)}, Tone::bad);
+  if (!status->fault.empty()) add({"fault: " + printable(status->fault, kLongestMessage)}, Tone::bad);
   if (!status->notice.empty()) add({"noticed: " + printable(status->notice, kLongestMessage)}, Tone::warning);
   if (!style.details) return out;
   add(health(*status));
