@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "drivers/row_times/median.h"
@@ -13,15 +14,10 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kTimes = 64;
-// Quarters of a time cell; the middle two are used, so that an outlier does not count.
-constexpr std::size_t kFine = 4;
-constexpr std::size_t kCells = kTimes * kFine;
 constexpr std::size_t kMostOctaves = 40;
 // Coefficients a cell needs; below, cells are joined in pairs.
-constexpr double kFewest = 8.0;
+constexpr double kFewest = 16.0;
 constexpr std::size_t kFewestTimes = 8;
-// Cells with fewer coefficients are not divided into quarters.
-constexpr double kParted = 32.0;
 // Departure in standard deviations that the noise of one octave reaches in fewer than one of 2000 records,
 // over all stretches (simulated).
 constexpr double kSurely = 5.2;
@@ -30,22 +26,18 @@ constexpr double kMaterial = 1.25;
 // Departure at which a further octave of the found stretch counts as changed.
 constexpr double kAlso = 3.0;
 constexpr std::size_t kMostChanges = 3;
-// A coefficient is limited to this multiple of the usual magnitude (normal noise exceeds it once in 15000).
-// The usual magnitude is a mean over kUsual coefficients.
-constexpr double kMostTimes = 5.0;
-constexpr double kUsual = 128.0;
+// A coefficient is limited to this multiple of its cell's median (2.7 standard deviations), so that a spike,
+// which is in one or two coefficients of each octave, is no louder noise.
+constexpr double kMostTimes = 4.0;
 // Values closer than this, relatively, are equal except for rounding. Most neighbours of a coarse sensor are.
 constexpr double kRoundedAway = 1e-13;
 // Limit of the reported ratio; avoids a division by almost zero.
 constexpr double kMostRatio = 1e6;
-// A step of kSpike usual steps is a spike if it returns within kMostReplaced samples.
-constexpr double kSpike = 10.0;
-constexpr int kMostReplaced = 3;
 
 // Sums of coefficient magnitudes of one octave, by time cell. Squares would not converge for heavy-tailed
 // noise; magnitudes cost an eighth of the information for normal noise.
 struct Octave {
-  std::array<double, kCells> magnitudes{}, counts{};
+  std::array<double, kTimes> magnitudes{}, counts{};
   double beyond_rounding = 0.0;  // count of coefficients beyond rounding
 };
 
@@ -57,11 +49,9 @@ class Pyramid {
 
   // Starts a new stretch.
   void begin() {
-    levels_ = {};
-    replaced_ = 0;
+    for (Level& level : levels_) level.count = 0;
   }
-  void take(double rate, std::size_t at) {
-    double value = despiked(rate);
+  void take(double value, std::size_t at) {
     for (std::size_t k = 0; k < kMostOctaves; ++k) {
       Level& level = levels_[k];
       level.last = {level.last[1], level.last[2], level.last[3], value};
@@ -72,31 +62,18 @@ class Pyramid {
       value = kHigh[3] * x[0] - kHigh[2] * x[1] + kHigh[1] * x[2] - kHigh[0] * x[3];
     }
   }
-  [[nodiscard]] const std::vector<Octave>& octaves() const { return octaves_; }
-
- private:
-  // Replaces a spike of a few samples by the sample before it. Slow octaves have few coefficients per cell,
-  // so a spike would look like a higher noise level.
-  double despiked(double rate) {
-    const double step = std::abs(rate - accepted_);
-    const bool first = levels_[0].count == 0;
-    if (!first && steps_ >= kParted && step > kSpike * usual_step_ && replaced_ < kMostReplaced) {
-      ++replaced_;
-      return accepted_;
-    }
-    replaced_ = 0;
-    accepted_ = rate;
-    if (first || step <= kRoundedAway * std::abs(rate)) return rate;
-    steps_ = std::min(steps_ + 1.0, kUsual);
-    usual_step_ += (std::min(step, kSpike * std::max(usual_step_, step / steps_)) - usual_step_) / steps_;
-    return rate;
+  // To be called once, after the last sample.
+  [[nodiscard]] const std::vector<Octave>& octaves() {
+    for (std::size_t k = 0; k < octaves_.size(); ++k) close(k);
+    return octaves_;
   }
 
+ private:
   struct Level {
     std::array<double, 4> last{};
     std::size_t count = 0;
-    std::size_t cell = 0, cell_end = 0;  // cell of the last coefficient; begin of the next cell, 0 at first
-    double usual = 0.0, met = 0.0;       // mean magnitude beyond rounding, and how many
+    std::size_t cell = 0;            // of the last coefficient
+    std::vector<double> magnitudes;  // of that cell, beyond rounding
   };
   // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
   static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
@@ -106,62 +83,38 @@ class Pyramid {
     if (octave >= octaves_.size()) octaves_.resize(octave + 1);
     // Centre of the filter, which spans three samples of its octave.
     const std::size_t place = at - std::min(at, std::size_t{3} << octave);
-    Level& level = levels_[octave];
-    if (place >= level.cell_end) {
-      level.cell = std::min(kCells - 1, place * kCells / samples_);
-      level.cell_end = (level.cell + 1) * samples_ / kCells + ((level.cell + 1) * samples_ % kCells != 0);
-    }
-    const std::size_t cell = level.cell;
+    const std::size_t cell = std::min(kTimes - 1, place * kTimes / samples_);
+    if (cell != levels_[octave].cell) close(octave);
+    levels_[octave].cell = cell;
     octaves_[octave].counts[cell] += 1.0;
-    if (std::abs(coefficient) <= rounding) return;
-    octaves_[octave].beyond_rounding += 1.0;
-    // The limit suppresses outliers; a lasting higher level soon becomes the usual.
-    level.met = std::min(level.met + 1.0, kUsual);
-    const double magnitude = level.met < kFewest ? std::abs(coefficient)
-                                                 : std::min(std::abs(coefficient), kMostTimes * level.usual);
-    level.usual += (magnitude - level.usual) / level.met;
-    octaves_[octave].magnitudes[cell] += magnitude;
+    if (std::abs(coefficient) > rounding) levels_[octave].magnitudes.push_back(std::abs(coefficient));
+  }
+  // Adds the magnitudes of its present cell.
+  void close(std::size_t octave) {
+    std::vector<double>& all = levels_[octave].magnitudes;
+    if (all.empty()) return;
+    octaves_[octave].beyond_rounding += static_cast<double>(all.size());
+    const double most = kMostTimes * median(all);
+    for (const double each : all) octaves_[octave].magnitudes[levels_[octave].cell] += std::min(each, most);
+    all.clear();
   }
 
   std::size_t samples_;
-  double accepted_ = 0.0, usual_step_ = 0.0, steps_ = 0.0;
-  int replaced_ = 0;
   std::array<Level, kMostOctaves> levels_{};
   std::vector<Octave> octaves_;
 };
 
 // Square roots of one octave's mean magnitudes by time cell, nearly normal.
 struct NoiseLevel {
-  std::vector<double> root;        // of the cells with enough coefficients
-  std::vector<std::size_t> cell;   // index of the first cell, kCells per record
-  double deviation = 0.0;          // of one root while the level is constant
-  std::size_t cells_each = kFine;  // cells per root
+  std::vector<double> root;       // of the cells with enough coefficients
+  std::vector<std::size_t> cell;  // index of the first cell, kTimes per record
+  double deviation = 0.0;         // of one root while the level is constant
+  std::size_t cells_each = 1;     // cells per root
 };
 
-double count_of(const Octave& octave, std::size_t begin, std::size_t end) {
-  double count = 0.0;
-  for (std::size_t i = begin; i < end; ++i) count += octave.counts[i];
-  return count;
-}
-
-double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
-  double sum = 0.0;
-  for (std::size_t i = begin; i < end; ++i) sum += octave.magnitudes[i];
-  const double count = count_of(octave, begin, end);
-  return count > 0.0 ? sum / count : 0.0;
-}
-
-// Mean of the middle two of four quarters.
-double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
-  std::array<double, kFine> quarters{};
-  const std::size_t length = (end - begin) / kFine;
-  for (std::size_t q = 0; q < kFine; ++q)
-    if (!(count_of(octave, begin + q * length, begin + (q + 1) * length) > 0.0))
-      return mean_magnitude(octave, begin, end);
-  for (std::size_t q = 0; q < kFine; ++q)
-    quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
-  std::ranges::sort(quarters);
-  return 0.5 * (quarters[1] + quarters[2]);
+double sum_of(const std::array<double, kTimes>& values, std::size_t begin, std::size_t end) {
+  return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                         values.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
 }
 
 // Scatter of means of `together` neighbouring roots, scaled to one root. Heavy tails scatter more than normal
@@ -177,7 +130,7 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
 }
 
 NoiseLevel noise_level_of(const Octave& octave) {
-  const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kCells);
+  const double count = octave.beyond_rounding, share = count / sum_of(octave.counts, 0, kTimes);
   // With a coarse sensor only a share of the differences is not zero. Their number varies, and they come in
   // pairs, as each change of the value is in two of them.
   const double wanted = kFewest * (1.0 + 3.0 * (1.0 - share));
@@ -185,26 +138,24 @@ NoiseLevel noise_level_of(const Octave& octave) {
   std::size_t times = kTimes;
   while (times >= kFewestTimes && count < wanted * static_cast<double>(times)) times /= 2;
   if (times < kFewestTimes) return out;
-  out.cells_each = kCells / times;
+  out.cells_each = kTimes / times;
   std::vector<double> counts;
-  for (std::size_t t = 0; t < times; ++t)
-    if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
+  for (std::size_t cell = 0; cell < kTimes; cell += out.cells_each)
+    if (const double here = sum_of(octave.counts, cell, cell + out.cells_each); here > 0.0)
       counts.push_back(here);
   // Usual count of values in a cell without missing samples.
   const double usual = median(counts);
-  for (std::size_t t = 0; t < times; ++t) {
-    const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
-    if (count_of(octave, begin, end) < 0.5 * usual) continue;
-    out.root.push_back(std::sqrt(usual < kParted ? mean_magnitude(octave, begin, end)
-                                                 : middle_magnitude(octave, begin, end)));
-    out.cell.push_back(begin);
+  for (std::size_t cell = 0; cell < kTimes; cell += out.cells_each) {
+    const double here = sum_of(octave.counts, cell, cell + out.cells_each);
+    if (here < 0.5 * usual) continue;
+    out.root.push_back(std::sqrt(sum_of(octave.magnitudes, cell, cell + out.cells_each) / here));
+    out.cell.push_back(cell);
   }
   if (out.root.size() < kFewestTimes) return out = {};
-  constexpr double kOfMiddle = 1.3;  // ratio of variances: mean of the middle two of four, mean of all four
   // The mean magnitude of n normal variables has relative variance (pi / 2 - 1) / n; its square root has a
   // quarter of that.
   const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
-  const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
+  const double least = std::sqrt(each / usual) * median(out.root);
   if (!(least > 0.0)) return {};
   out.deviation = least;
   for (const std::size_t together : {1U, 2U, 4U})
@@ -322,8 +273,8 @@ std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps, std::
     const Found found = surest(all);
     if (found.departure < kSurely) break;
     changes.push_back(described(found, all, period_s));
-    changes.back().from_s = time_s(found.begin * rate_radps.size() / kCells);
-    changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kCells));
+    changes.back().from_s = time_s(found.begin * rate_radps.size() / kTimes);
+    changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kTimes));
     leave_out(found, all);
   }
   std::ranges::sort(changes, {}, &NoiseChange::from_s);
