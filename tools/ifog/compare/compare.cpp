@@ -247,11 +247,11 @@ void run_compare(const CompareArguments& options) {
       options.capture, capture.size(), 1.0 / in.period_s, s.state, s.process_noise, s.measurement_noise,
       s.window);
   if (!motion.words.empty()) say("note: {}\n", motion.words);
-  say("above: what the verdict's figure is more than the best rule's; rates in deg/h; heading: integral of "
-      "denoised - compensated; at rest: share of samples outside\n"
-      "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
-      "over\n"
-      "that of a normal law; steps of 20 and 5 sigma in samples to 90 %\n");
+  say("above: excess of the verdict's figure over the best rule's; std, ADEV, max: deg/h\n"
+      "heading: integral of denoised - compensated; at rest: share of samples outside manoeuvres\n"
+      "of their innovations, lag-1: correlation; NIS: squares over their variance, median over a normal "
+      "law's\n"
+      "20s, 5s: samples to 90 % of a step of 20 and 5 sigma\n");
   const std::vector<Verdict> verdicts =
       print_axes(capture, result, !motion.words.empty() && !motion.left_out);
   write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
