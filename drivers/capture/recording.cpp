@@ -55,7 +55,7 @@ bool is_text(std::string_view head) {
 
 bool is_hdf5(const std::string& path) {
   const std::string_view name = unpacked_name(path);
-  return has_ending(name, ".h5") || has_ending(name, ".hdf5");
+  return boost::iends_with(name, ".h5") || boost::iends_with(name, ".hdf5");
 }
 
 // By its name, unless the content contradicts; a user block may precede the signature.
@@ -82,7 +82,7 @@ FileKind file_kind(const std::string& path) {
 FileKind file_kind(const InputFile& file) {
   if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
   const std::string_view name = unpacked_name(file.path());
-  const bool says_nothing = has_ending(name, ".txt") || has_ending(name, ".dat");
+  const bool says_nothing = boost::iends_with(name, ".txt") || boost::iends_with(name, ".dat");
   FileKind by_name = says_nothing ? FileKind::unknown : file_kind(file.path());
   // Many programs use this ending: a line near the beginning is a frame, though the first may be incomplete.
   const auto any = [](const ifog_can_frame&) { return true; };

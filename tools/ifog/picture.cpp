@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
@@ -36,7 +37,6 @@ void run_picture(const PictureArguments& a) {
   LongTable table;
   LongTableSink sink(table);
   read_published(log, a.channel, sink);
-  const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
   const TimePart::Rows rows = a.part.rows(table.time_s, table.origin, a.log);
   const auto shown = [&rows](const Samples& values, double scale) {
     const std::span<const double> part = rows.of(values);
@@ -47,7 +47,8 @@ void run_picture(const PictureArguments& a) {
                      {"rate (°/h)", false, {}, {}});
   std::size_t axes = 0, curves = 0;
   for (const LongColumn& column : table.columns) {
-    const bool raw = column.name == "raw" + suffix, denoised = column.name == "denoised" + suffix;
+    const bool raw = column.name == of_axis("raw", a.axis) + "_radps",
+               denoised = column.name == of_axis("denoised", a.axis) + "_radps";
     if (column.name.starts_with("raw")) ++axes;
     if (!raw && !denoised) continue;
     ++curves;

@@ -106,7 +106,7 @@ std::size_t same_rows(std::span<const double> a, std::span<const double> b) {
 // not the filter's.
 std::size_t start_of_filter(const LongTable& table, const LoggedRate& logged) {
   if (logged.signal != "denoised") return 0;
-  const std::string wanted = "compensated" + (logged.axis.empty() ? "" : "_" + logged.axis) + "_radps";
+  const std::string wanted = of_axis("compensated", logged.axis) + "_radps";
   for (const LongColumn& other : table.columns) {
     if (other.name != wanted) continue;
     const std::size_t same = same_rows(logged.column.values, other.values);
@@ -127,7 +127,7 @@ std::vector<LoggedRate> rates_of(const AnalysedPart& part, const std::string& wa
     if (std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
     if (!wanted.empty() && axis != wanted) continue;
     if (is_dead(rows.of(column.values)))
-      left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
+      left_out.push_back(of_axis(signal, axis));
     else
       rates.push_back({part, column, signal, axis, rows.of(column.values)});
   }

@@ -149,12 +149,11 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
   OfflineTimes times(driver.description(), rows);
   if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
-  const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
+  input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
     times.advance(sample);
     read_sample(sample, facts.frame_channels, reading);
     chain.run(reading, times.now_s());
   });
-  for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <boost/algorithm/string/join.hpp>
 #include <cstddef>
 #include <ifog/status_t.hpp>
 #include <string>
@@ -31,9 +32,7 @@ inline std::vector<std::string> books_parts(const status_t& status) {
 }
 
 inline std::string books_text(const status_t& status) {
-  std::string out;
-  for (const std::string& part : books_parts(status)) out += (out.empty() ? "" : " ") + part;
-  return out;
+  return boost::join(books_parts(status), " ");
 }
 
 // True if all balances of this message are exact.

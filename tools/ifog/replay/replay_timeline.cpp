@@ -11,7 +11,6 @@
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
-#include "drivers/row_times/sample_clock.h"
 #include "drivers/timeline/timeline.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/console/errors.h"
@@ -120,10 +119,9 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
     throw refusal("{}: a capture in columns needs --driver NAME, whose frames its rows become", source.path);
   const LongCapture read(source.input.read_long_columns(file), source.path);
   const CaptureView& capture = read.view();
-  const double rate_hz = capture.size() > 1 ? sample_rate_hz(sample_clock(capture.time_s).period_s) : 0.0;
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
-  DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
-  CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
+  DriverInstance driver(plugin, with_rate(capture, *plugin, source.input.settings()));
+  CaptureEncoder encoder(capture, driver, source.axis);
   for (const std::string& notice : encoder.notices()) warn("{}: {}\n", source.path, notice);
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;

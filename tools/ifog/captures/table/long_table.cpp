@@ -144,7 +144,7 @@ LongTable long_table(Capture capture) {
   rows.time_s = std::move(capture.time_s);
   const auto add = [&](const std::string& what, const std::string& axis, std::vector<double>& values) {
     if (values.empty()) return;
-    names.push_back(what + (axis.empty() ? "" : "_" + axis) + "_radps");
+    names.push_back(of_axis(what, axis) + "_radps");
     rows.columns.push_back(std::move(values));
   };
   for (std::size_t i = 0; i < capture.axes.size(); ++i) {
