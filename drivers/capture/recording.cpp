@@ -91,11 +91,6 @@ FileKind file_kind(const InputFile& file) {
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
 
-std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other) {
-  return path + ": frames of one id come on " + in_quotes(one) + " and on " + in_quotes(other) +
-         ", as from two devices, expected --channel with one of them";
-}
-
 bool wants(const ifog_description& description, const ifog_can_frame& frame) {
   const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
   const auto* const end = description.can_id + description.can_ids;
@@ -112,15 +107,9 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     sink(sample);
   };
   if (driver.takes_can()) {
-    CandumpBuses buses;
-    counts.candump =
-        for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
-          // Two devices with one id would be mistaken for one.
-          if (wants(driver.description(), frame))
-            if (const std::string_view other = buses.other(frame, from); !other.empty())
-              throw std::runtime_error(two_interfaces(file.path(), other, from));
-          driver.decode_can(frame, take);
-        });
+    counts.candump = for_each_candump_frame(
+        file, interface, [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); },
+        [&](const ifog_can_frame& frame, std::string_view) { driver.decode_can(frame, take); });
   } else {
     std::vector<char> bytes(kPiece);
     while (const std::size_t n = file.read_what_is_there(bytes.data(), bytes.size()))
