@@ -99,7 +99,7 @@ Rates triple_of(const TableSample& table) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Words& words = table.columns[i].words;
     const std::string &unit = table.columns[i].unit, &text = words.text;
-    attitude = attitude || text == "w" || text == "qw" || text == "q_w";
+    attitude = attitude || text == "w" || text.ends_with("qw") || text.ends_with("_w");
     if (text.size() == 1 && text >= "p" && text <= "r" && (unit.empty() || angle_unit(unit, true, true)))
       body.push_back(
           {i, axis_name(static_cast<std::size_t>(text[0] - 'p')), units_by_name(words, unit, false)});
@@ -108,7 +108,7 @@ Rates triple_of(const TableSample& table) {
   if (body.size() == 3) return body;
   for (const char* const stem : {"wb", "rot", "", "xyz"})  // "xyz[0]" of PX4
     if (const Rates& axes = bare[stem];
-        axes.size() == 3 && !(attitude && stem[0] == 0) && !is_gravity(table, axes))
+        axes.size() == 3 && (!attitude || stem[0] == 'w') && !is_gravity(table, axes))
       return axes;
   return {};
 }

@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include <boost/algorithm/string/join.hpp>
 #include <cstddef>
 #include <ifog/status_t.hpp>
 #include <string>
@@ -29,10 +28,6 @@ inline std::vector<std::string> books_parts(const status_t& status) {
               "+ " + n(status.samples_merged) + " merged", "+ " + n(status.lcm_failures) + " not sent",
               "+ " + n(status.samples_waiting) + " waiting,", n(status.samples_repeated) + " came twice"});
   return out;
-}
-
-inline std::string books_text(const status_t& status) {
-  return boost::join(books_parts(status), " ");
 }
 
 // True if all balances of this message are exact.
