@@ -8,7 +8,7 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/readings.h"
-#include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/times/row_sink.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "drivers/capture/columns/column.h"
-#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 namespace {
