@@ -29,10 +29,9 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
   const auto index_of = [&](const std::string& name) {
     for (std::size_t i = 0; i < shape.axes.size(); ++i)
       if (shape.axes[i] == name) return i;
-    const std::string& first = shape.axes.front();
     fail_at(path, notes.header_line,
             "a reference of axis " + in_quotes(name) + " has no rate column, expected the name of an axis: " +
-                "reference_rate" + (first.empty() ? "" : "_" + first) + "_radps");
+                of_axis("reference_rate", shape.axes.front()) + "_radps");
   };
   using Kind = CaptureShape::Place::Kind;
   for (const std::string& name : names) {

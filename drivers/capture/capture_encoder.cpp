@@ -2,6 +2,7 @@
 #include "drivers/capture/capture_encoder.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/row_times/sample_clock.h"
 
 namespace ifog {
 namespace {
@@ -22,40 +24,34 @@ std::string seven_digits(double value) {
   return text;
 }
 
-std::string list_of_axes(const ifog_description& d) {
-  std::string list;
-  for (std::uint32_t i = 0; i < d.axes; ++i)
-    list +=
-        (list.empty() ? "" : ", ") + (d.axis[i][0] == '\0' ? std::string("one without a name") : d.axis[i]);
-  return list;
+std::size_t driver_axis(const ifog_description& d, const std::string& name) {
+  std::vector<std::string> names(d.axis, d.axis + d.axes);
+  if (const auto found = std::ranges::find(names, name); found != names.end())
+    return static_cast<std::size_t>(found - names.begin());
+  std::ranges::replace(names, "", "one without a name");
+  throw std::runtime_error("the driver has no axis " + in_quotes(name) +
+                           ", expected one of: " + boost::join(names, ", "));
 }
 
-std::size_t driver_axis(const ifog_description& d, const std::string& name) {
-  for (std::uint32_t i = 0; i < d.axes; ++i)
-    if (name == d.axis[i]) return i;
-  throw std::runtime_error("the driver has no axis " + in_quotes(name) +
-                           ", expected one of: " + list_of_axes(d));
+// Sample rate to seven digits, because decimal times are not exact in binary: 1 / (0.015 − 0.010) is not quite 200. "0"
+// without a step.
+std::string rate_of(const CaptureView& capture) {
+  return capture.size() < 2 ? "0" : seven_digits(1.0 / sample_clock(capture.time_s).period_s);
 }
 
 }  // namespace
 
-double sample_rate_hz(double step_s) {
-  // Decimal times are not exact in binary: 1 / (0.015 − 0.010) is not quite 200.
-  return std::isnan(step_s) ? 0.0 : std::strtod(seven_digits(1.0 / step_s).c_str(), nullptr);
-}
-
-DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings) {
+DriverSettings with_rate(const CaptureView& capture, const Plugin& plugin, DriverSettings settings) {
   const ifog_option* option = plugin.table().options;
   while (option->key != nullptr && std::string(option->key) != "rate_hz") ++option;
-  if (option->key != nullptr && rate_hz != 0.0) settings.try_emplace("rate_hz", seven_digits(rate_hz));
+  if (option->key != nullptr && capture.size() > 1) settings.try_emplace("rate_hz", rate_of(capture));
   return settings;
 }
 
-CaptureEncoder::CaptureEncoder(CaptureView capture, DriverInstance& driver, double rate_hz,
-                               const std::string& axis)
+CaptureEncoder::CaptureEncoder(CaptureView capture, DriverInstance& driver, const std::string& axis)
     : capture_(std::move(capture)), driver_(driver), angle_(capture_.axes.size(), 0.0) {
   const ifog_description& d = driver.description();
-  rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
+  rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : std::strtod(rate_of(capture_).c_str(), nullptr);
   timed_ = d.has_device_time != 0 || driver.takes_can();
   const double first_s = capture_.size() > 0 ? capture_.origin.in_s(capture_.time_s.front()) : 0;
   if (timed_ && first_s < 0.0) {
@@ -80,26 +76,24 @@ CaptureEncoder::CaptureEncoder(CaptureView capture, DriverInstance& driver, doub
                          (capture_.axes[i].empty() ? "" : " of axis " + capture_.axes[i]));
 
   channels_.resize(d.environments);
-  std::string without_place, without_column;
-  const auto add = [](std::string& list, const std::string& name) {
-    list += (list.empty() ? "" : ", ") + name;
-  };
+  std::vector<std::string> without_place, without_column;
   for (const CaptureView::Channel& channel : capture_.channels) {
     std::size_t at = 0;
     while (at < d.environments && channel.name != d.environment[at]) ++at;
     if (at < d.environments)
       channels_[at] = channel.values;
     else
-      add(without_place, channel.name);
+      without_place.push_back(channel.name);
   }
   for (std::uint32_t i = 0; i < d.environments; ++i)
-    if (channels_[i].empty()) add(without_column, d.environment[i]);
+    if (channels_[i].empty()) without_column.emplace_back(d.environment[i]);
   if (!without_place.empty())
-    notices_.push_back("not sent, as the format as set up has no place for it: " + without_place);
+    notices_.push_back("not sent, as the format as set up has no place for it: " +
+                       boost::join(without_place, ", "));
   if (!without_column.empty())
     notices_.push_back(
         "no data for these fields, sent as invalid, or as 0 where the format has no invalid: " +
-        without_column);
+        boost::join(without_column, ", "));
 
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }

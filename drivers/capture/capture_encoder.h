@@ -12,12 +12,9 @@
 
 namespace ifog {
 
-// Sample rate in Hz: 1 / median time step, to seven digits. 0 without a step.
-double sample_rate_hz(double step_s);
-
-// Settings with `rate_hz` from the capture, if it is known (not 0), the driver has this option and the user
-// did not set it.
-DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings);
+// Settings with `rate_hz` from the capture, if it has two rows, the driver has this option and the user did not set
+// it.
+DriverSettings with_rate(const CaptureView& capture, const Plugin& plugin, DriverSettings settings);
 
 // Converts rows to samples in order. The rate becomes a delta angle over the sample period, or an angle that
 // sums up and wraps, as the driver needs. The counter counts sample periods, so missing rows are a gap in it.
@@ -27,8 +24,7 @@ class CaptureEncoder {
  public:
   // axis: driver's axis for a capture of one axis, "" for its first; several axes are matched by name. Throws
   // std::runtime_error for an axis that the driver does not have. The columns and the driver must outlive this.
-  // rate_hz: sample_rate_hz() of the capture.
-  CaptureEncoder(CaptureView capture, DriverInstance& driver, double rate_hz, const std::string& axis = {});
+  CaptureEncoder(CaptureView capture, DriverInstance& driver, const std::string& axis = {});
 
   // One line for columns that the format cannot carry, and one for fields that the capture lacks.
   [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }

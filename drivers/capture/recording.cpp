@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -55,7 +54,7 @@ bool is_text(std::string_view head) {
 
 bool is_hdf5(const std::string& path) {
   const std::string_view name = unpacked_name(path);
-  return has_ending(name, ".h5") || has_ending(name, ".hdf5");
+  return boost::iends_with(name, ".h5") || boost::iends_with(name, ".hdf5");
 }
 
 // By its name, unless the content contradicts; a user block may precede the signature.
@@ -82,18 +81,13 @@ FileKind file_kind(const std::string& path) {
 FileKind file_kind(const InputFile& file) {
   if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
   const std::string_view name = unpacked_name(file.path());
-  const bool says_nothing = has_ending(name, ".txt") || has_ending(name, ".dat");
+  const bool says_nothing = boost::iends_with(name, ".txt") || boost::iends_with(name, ".dat");
   FileKind by_name = says_nothing ? FileKind::unknown : file_kind(file.path());
   // Many programs use this ending: a line near the beginning is a frame, though the first may be incomplete.
   const auto any = [](const ifog_can_frame&) { return true; };
   if (by_name == FileKind::candump && !file.head().empty() && first_interface(file.head(), any).empty())
     by_name = FileKind::unknown;
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
-}
-
-std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other) {
-  return path + ": frames of one id come on " + in_quotes(one) + " and on " + in_quotes(other) +
-         ", as from two devices, expected --channel with one of them";
 }
 
 bool wants(const ifog_description& description, const ifog_can_frame& frame) {
@@ -112,15 +106,9 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     sink(sample);
   };
   if (driver.takes_can()) {
-    CandumpBuses buses;
-    counts.candump =
-        for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
-          // Two devices with one id would be mistaken for one.
-          if (wants(driver.description(), frame))
-            if (const std::string_view other = buses.other(frame, from); !other.empty())
-              throw std::runtime_error(two_interfaces(file.path(), other, from));
-          driver.decode_can(frame, take);
-        });
+    counts.candump = for_each_candump_frame(
+        file, interface, [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); },
+        [&](const ifog_can_frame& frame, std::string_view) { driver.decode_can(frame, take); });
   } else {
     std::vector<char> bytes(kPiece);
     while (const std::size_t n = file.read_what_is_there(bytes.data(), bytes.size()))

@@ -50,8 +50,6 @@ std::vector<std::string> losses(const RecordingCounts& counts);
 
 // True if the driver needs this frame.
 bool wants(const ifog_description& description, const ifog_can_frame& frame);
-// Message about a candump log with frames of one id on two interfaces.
-std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other);
 
 // Feeds the recording to the driver, as candump if it takes CAN frames, else as bytes. interface: only its
 // frames of a candump log, "" for all. A log's frames have their recorded arrival times, raw bytes 0. Throws

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
@@ -36,7 +37,6 @@ void run_picture(const PictureArguments& a) {
   LongTable table;
   LongTableSink sink(table);
   read_published(log, a.channel, sink);
-  const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
   const TimePart::Rows rows = a.part.rows(table.time_s, table.origin, a.log);
   const auto shown = [&rows](const Samples& values, double scale) {
     const std::span<const double> part = rows.of(values);
@@ -45,18 +45,14 @@ void run_picture(const PictureArguments& a) {
   const report::TimeAxis time(table.time_s[rows.begin], table.time_s[rows.end - 1]);
   report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.", time.axis(),
                      {"rate (°/h)", false, {}, {}});
-  std::size_t axes = 0, curves = 0;
-  for (const LongColumn& column : table.columns) {
-    const bool raw = column.name == "raw" + suffix, denoised = column.name == "denoised" + suffix;
-    if (column.name.starts_with("raw")) ++axes;
-    if (!raw && !denoised) continue;
-    ++curves;
-    rate.line_in_time(raw ? report::Role::kRaw : report::Role::kAfter, raw ? "raw" : "denoised",
-                      time(shown(table.time_s, 1.0)), shown(column.values, 1.0 / kDegreePerHour));
-  }
-  if (curves != 2)
+  const LongColumn* const raw = table.column(of_axis("raw", a.axis) + "_radps");
+  const LongColumn* const denoised = table.column(of_axis("denoised", a.axis) + "_radps");
+  if (raw == nullptr || denoised == nullptr)
     throw refusal("{}: --axis {}: expected {}", a.log, in_quotes(a.axis),
-                  axes == 1 ? "none, the sensor has one axis" : "x, y or z");
+                  table.column("raw_radps") != nullptr ? "none, the sensor has one axis" : "x, y or z");
+  const std::vector<double> shown_s = time(shown(table.time_s, 1.0));
+  rate.line_in_time(report::Role::kRaw, "raw", shown_s, shown(raw->values, 1.0 / kDegreePerHour));
+  rate.line_in_time(report::Role::kAfter, "denoised", shown_s, shown(denoised->values, 1.0 / kDegreePerHour));
   AllanOptions options;
   options.axis = a.axis;
   options.part = a.part;

@@ -30,7 +30,7 @@ struct Simulate {
   void run() const {
     expect_capture_name("--output", output, &encoding);
     expect_ending("--truth", truth,
-                  has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
+                  boost::iends_with(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
                   std::string(".json, ").append(kColumnEndings));
     simulate::Scenario s = simulate::read_scenario(scenario, seed ? &*seed : nullptr);
     const simulate::Simulation made = naming(scenario, [&s] {

@@ -107,12 +107,13 @@ std::string picture_svg(const std::string& title, const std::vector<PictureRow>&
 }
 
 std::string wrong_picture_name(const std::string& path) {
-  if (has_ending(path, ".svg") || has_ending(path, ".png") || is_standard_output(path)) return "";
+  if (boost::iends_with(path, ".svg") || boost::iends_with(path, ".png") || is_standard_output(path))
+    return "";
   return "is " + in_quotes(path, kLongestMessage) + ", expected a name ending in .svg or .png";
 }
 
 void write_picture(const std::string& path, const std::string& svg) {
-  write_file(path, has_ending(path, ".png") ? png(path, svg) : svg);
+  write_file(path, boost::iends_with(path, ".png") ? png(path, svg) : svg);
 }
 
 std::string page_style() { return std::string(kReportStyle).append(kChartStyle); }

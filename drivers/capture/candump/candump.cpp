@@ -317,14 +317,24 @@ std::optional<std::int64_t> zero_of_stamps(std::string_view beginning) {
   return entry.stamp == CandumpStamp::since ? kShortStampsFrom_ns : 0;
 }
 
-std::string first_interface(std::string_view beginning,
-                            const std::function<bool(const ifog_can_frame&)>& wanted) {
+std::string first_interface(std::string_view beginning, const WantedFrame& wanted) {
   for (CandumpEntry entry; next_entry(beginning, entry);)
     if (wanted(entry.frame)) return std::string(entry.interface);
   return {};
 }
 
-CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const WantedFrame& wanted,
+                                     const CandumpSink& sink) {
+  CandumpBuses buses;
+  const auto hand_on = [&](const ifog_can_frame& frame, std::string_view from) {
+    // Two devices with one id would be mistaken for one.
+    if (wanted(frame))
+      if (const std::string_view other = buses.other(frame, from); !other.empty())
+        throw std::runtime_error(file.path() + ": frames of one id come on " + in_quotes(other) + " and on " +
+                                 in_quotes(from) +
+                                 ", as from two devices, expected --channel with one of them");
+    sink(frame, from);
+  };
   Frames frames(file.path(), interface, times_are_differences(file.head()));
   TextPieces pieces([&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); });
   for (std::string piece; pieces.next(piece);)
@@ -333,7 +343,7 @@ CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface
       const bool ended = end < text.size();
       const Frames::Is is = frames.take(text.substr(0, end), ended);
       if (is == Frames::Is::end) return frames.losses();
-      if (is == Frames::Is::frame) sink(frames.entry().frame, frames.entry().interface);
+      if (is == Frames::Is::frame) hand_on(frames.entry().frame, frames.entry().interface);
       text.remove_prefix(end + (ended ? 1 : 0));
     }
   return frames.losses();

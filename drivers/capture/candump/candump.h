@@ -98,15 +98,17 @@ struct CandumpLosses {
 // A frame and its interface.
 using CandumpSink = std::function<void(const ifog_can_frame&, std::string_view)>;
 
-// Reads a log of any length, plain or gzip. interface: only its frames, "" for all. Throws std::runtime_error
-// with one line: file, line, what was expected; frames may have been passed before.
-CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink);
+// Reads a log of any length, plain or gzip. interface: only its frames, "" for all. wanted: frames of one device, of
+// which no id may come from two interfaces. Throws std::runtime_error with one line: file, line, what was expected;
+// frames may have been passed before.
+using WantedFrame = std::function<bool(const ifog_can_frame&)>;
+CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const WantedFrame& wanted,
+                                     const CandumpSink& sink);
 
 // Arrival time, ns, of a stamp of zero in a log with this beginning; nullopt if its lines have no times.
 std::optional<std::int64_t> zero_of_stamps(std::string_view beginning);
 
 // Interface of the first wanted frame in the log's beginning, or "".
-std::string first_interface(std::string_view beginning,
-                            const std::function<bool(const ifog_can_frame&)>& wanted);
+std::string first_interface(std::string_view beginning, const WantedFrame& wanted);
 
 }  // namespace ifog

@@ -45,7 +45,8 @@ constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang heading winkel integrated cumulative "},
     {Role::time,
-     " time timestamp stamp t utc datetime date zeit zeitstempel seconds elapsed tow sow sampletimefine "
+     " time timestamp stamp tick ticks t utc datetime date zeit zeitstempel seconds elapsed tow sow "
+     "sampletimefine "
      "timeusec secs "
      "millis micros nanos milliseconds microseconds nanoseconds gpst gpstow epoch tiempo temps "},
     {Role::no_time,
@@ -54,19 +55,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 11> kWords{{
     {Role::one, " id sensor device instance topic i imu "},
 }};
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
-
-// "gyro_rad[0]" is "gyro_rad" and number 0.
-std::string without_index(const std::string& header, char& number) {
-  const std::size_t open = header.rfind('[');
-  if (open == std::string::npos || header.size() != open + 3 || header.back() != ']' ||
-      !is_digit(header[open + 1]))
-    return header;
-  number = header[open + 1];
-  return header.substr(0, open);
-}
 
 std::string without_unit(const std::string& header) {
   const std::size_t bracket = header.find_last_of("([");  // "Gyroscope (z) [rad/s]" has an axis before it
@@ -97,12 +86,18 @@ std::vector<std::string> split(const std::string& text) {
     word += c;
   }
   end_word();
-  // dTheta, dAngle: one word.
-  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    // DelAX of ArduPilot: a delta angle.
+    if (words[i] == "del" && words[i + 1].size() == 2 && words[i + 1][0] == 'a') {
+      words.push_back(words[i + 1].substr(1));
+      words[i] = "delta", words[i + 1] = "angle";
+    }
+    // dTheta, dAngle: one word.
     if (words[i] == "d" && (words[i + 1] == "theta" || words[i + 1] == "angle" || words[i + 1] == "ang")) {
       words[i] += words[i + 1];
       words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     }
+  }
   return words;
 }
 
@@ -133,7 +128,7 @@ std::string axis_of_turn(std::string& word) {
 
 // Unit in ASCII: deg/s for a degree sign of another encoding than UTF-8.
 std::string typed(const std::string& unit) {
-  if (printable(unit, unit.size()) == unit) return unit;
+  if (is_utf8(unit)) return unit;
   for (const char* const known : {"deg/s", "rad/s", "deg", "deg/h", "degC", "s", "us"}) {
     const auto by = convert_unit(unit, known);
     const auto angle = angle_unit(unit, false, false);
@@ -159,6 +154,19 @@ std::string lower(std::string text) {
   return text;
 }
 
+bool is_utf8(const std::string& text) { return printable(text, text.size()) == text; }
+
+std::string in_utf8(const std::string& text) {
+  if (is_utf8(text)) return text;
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80U) out += static_cast<char>(0xC0U | byte >> 6U);
+    out += static_cast<char>(byte >= 0x80U ? 0x80U | (byte & 0x3FU) : byte);
+  }
+  return out;
+}
+
 bool says(std::string_view word, Role role) {
   const auto* const words =
       std::ranges::find_if(kWords, [role](const auto& each) { return each.first == role; });
@@ -166,8 +174,9 @@ bool says(std::string_view word, Role role) {
 }
 
 Words::Words(const std::string& header) {
-  const std::string bare = without_unit(without_index(header, number));
-  const bool any_language = printable(bare, bare.size()) == bare;  // UTF-8
+  const std::string unnumbered = without_index(header), bare = without_unit(unnumbered);
+  if (unnumbered.size() + 3 == header.size()) number = header[unnumbered.size() + 1];
+  const bool any_language = is_utf8(bare);
   for (const char c : lower(bare)) {
     const bool foreign = any_language && static_cast<unsigned char>(c) >= 0x80U;
     text += is_letter(c) || is_digit(c) || foreign ? c : '_';
@@ -262,8 +271,7 @@ void TableSample::set(const std::vector<std::string>& names, const std::vector<s
   for (std::size_t i = 0; i < names.size(); ++i) {
     TableColumn& column = columns.emplace_back(names[i], units.empty() ? "" : units[i], cells[i]);
     const bool alone = !names[i].empty() && std::ranges::count(names, names[i]) == 1;
-    column.header =
-        alone && printable(names[i], names[i].size()) == names[i] ? names[i] : "#" + std::to_string(i + 1);
+    column.header = alone && is_utf8(names[i]) ? names[i] : "#" + std::to_string(i + 1);
     if (column.words.number != '\0') numbers[column.words.stem].insert(column.words.number);
   }
   // Numbers count the axes from 0 or 1, unless there are more than three.

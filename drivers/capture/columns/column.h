@@ -3,6 +3,7 @@
 // cells. All evidence is gathered once, here.
 #pragma once
 
+#include <cctype>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -11,8 +12,14 @@
 
 namespace ifog {
 
+[[nodiscard]] inline bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+[[nodiscard]] inline bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 // Lower case.
 [[nodiscard]] std::string lower(std::string text);
+// True for UTF-8 without control characters.
+[[nodiscard]] bool is_utf8(const std::string& text);
+// The text, or Latin-1 in UTF-8, as a name is typed.
+[[nodiscard]] std::string in_utf8(const std::string& text);
 
 // Roles of a word in a column name; see column.cpp.
 enum class Role { rate, speed, turn, glued, no_rate, truth, step, angle, time, no_time, one };

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
@@ -84,10 +83,6 @@ std::string shortest(double value) {
   std::string text;
   append_shortest(text, value);
   return text;
-}
-
-void fail_at(const std::string& path, std::size_t line, const std::string& what) {
-  throw std::runtime_error(path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
 }
 
 Measurable measurable(const std::string& column) {

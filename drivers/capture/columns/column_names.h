@@ -14,6 +14,11 @@
 
 namespace ifog {
 
+// "rate_x" of "rate" and the axis "x"; "rate" if the axis has no name.
+inline std::string of_axis(const std::string& what, const std::string& axis) {
+  return axis.empty() ? what : what + "_" + axis;
+}
+
 // Axis of a rate column: "" for "rate_radps", "x" for "rate_x_radps". False for other columns.
 bool axis_of(const std::string& name, std::string_view prefix, std::string& axis);
 
@@ -34,9 +39,6 @@ std::string no_rate_among(const std::vector<std::string>& names);
 // Shortest text that reads back exactly.
 std::string shortest(double value);
 void append_shortest(std::string& out, double value);
-
-// Throws std::runtime_error "PATH:LINE: WHAT"; without LINE if it is 0.
-[[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
 
 // Possible range of values. Values outside are no measurements, and a single one would dominate a fit. All commands
 // use these ranges.

@@ -108,11 +108,14 @@ UnitConversion CsvColumn::conversion() const {
   return by;
 }
 
+std::string without_index(const std::string& name) {
+  const std::size_t open = std::min(name.rfind('['), name.size());
+  const std::size_t close = name.find_first_not_of("0123456789", open + 1);
+  return close + 1 == name.size() && close > open + 1 && name.back() == ']' ? name.substr(0, open) : name;
+}
+
 std::string unit_in_name(const std::string& name) {
-  // gyro_rad[0]: an index, no unit.
-  const bool indexed = name.size() > 3 && name.back() == ']' && name[name.size() - 3] == '[' &&
-                       std::isdigit(static_cast<unsigned char>(name[name.size() - 2])) != 0;
-  const std::string header = indexed ? name.substr(0, name.size() - 3) : name;
+  const std::string header = without_index(name);
   for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}}) {
     const std::size_t at = header.find(open);
     if (at == std::string::npos || header.back() != close) continue;

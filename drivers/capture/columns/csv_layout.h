@@ -77,6 +77,8 @@ std::vector<std::string> parts_of_time(const std::string& header,
 std::string option_for(const CsvColumn& column, const std::string& unit);
 std::string option_for(const CsvTime& time);
 
+// "gyro_rad" of "gyro_rad[0]", a column of a matrix.
+std::string without_index(const std::string& name);
 // Unit at the end of a column's name, "GyroX (deg/s)" or "gyro_x_dps", or "". A counter `k`, a `gps_t` or an
 // `adc_c` is not in kelvin, tesla or degrees.
 std::string unit_in_name(const std::string& name);

@@ -2,7 +2,6 @@
 // Which columns are rates, and which of them belong to one sensor.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -28,15 +27,14 @@ bool speaks_of_rate(const Words& words) {
          // wz; w_RS_S_x of kalibr; gx, gx2, g_x, IMU_gx.
          (!words.axis.empty() &&
           (words.first() == "w" ||
-           (words.first() == "g" &&
-            (words.size() == 1 || std::isdigit(static_cast<unsigned char>(words.words[1][0])) != 0)) ||
+           (words.first() == "g" && (words.size() == 1 || is_digit(words.words[1][0]))) ||
            words.text.ends_with("_g" + words.axis)));
 }
 
 // By name or convention: a bare unit of angle leaves open of what it is.
 std::vector<std::string> units_by_name(const Words& words, const std::string& unit, bool increment) {
   if (unit.empty()) {
-    // sensor_msgs/Imu of ROS: rad/s; vehicle_imu of PX4: rad per sample.
+    // sensor_msgs/Imu of ROS: rad/s; vehicle_imu of PX4 and IMT of ArduPilot: rad per sample.
     if (increment && words.has("delta") && words.has("angle")) return {"rad/sample"};
     if (words.has("angular") && words.has("velocity")) return {"rad/s"};
     return {};
@@ -92,23 +90,27 @@ bool is_gravity(const TableSample& table, const Rates& rates) {
          });
 }
 
-// p, q and r are body rates; x, y and z alone are the axes of a file with a single sensor, e.g. of a phone.
-// Next to w or qw they are a quaternion or position.
+// p, q and r are body rates, and so are wb_x, wb_y, wb_z; rot0, rot1, rot2 may be. x, y and z alone are the axes of a
+// file with a single sensor, e.g. of a phone. Next to w or qw they are a quaternion or position.
 Rates triple_of(const TableSample& table) {
-  Rates body, bare;
+  Rates body;
+  std::map<std::string, Rates> bare;  // by the name without the axis
   bool attitude = false;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Words& words = table.columns[i].words;
     const std::string &unit = table.columns[i].unit, &text = words.text;
-    attitude = attitude || text == "w" || text == "qw" || text == "q_w";
+    attitude = attitude || text == "w" || text.ends_with("qw") || text.ends_with("_w");
     if (text.size() == 1 && text >= "p" && text <= "r" && (unit.empty() || angle_unit(unit, true, true)))
       body.push_back(
           {i, axis_name(static_cast<std::size_t>(text[0] - 'p')), units_by_name(words, unit, false)});
-    const bool nameless = words.size() == 0 || text == "xyz";  // "xyz[0]" of PX4
-    if (nameless && !words.axis.empty() && unit.empty()) bare.push_back({i, words.axis});
+    if (!words.axis.empty() && unit.empty()) bare[words.stem].push_back({i, words.axis});
   }
   if (body.size() == 3) return body;
-  return bare.size() == 3 && !attitude && !is_gravity(table, bare) ? bare : Rates();
+  for (const char* const stem : {"wb", "rot", "", "xyz"})  // "xyz[0]" of PX4
+    if (const Rates& axes = bare[stem];
+        axes.size() == 3 && (!attitude || stem[0] == 'w') && !is_gravity(table, axes))
+      return axes;
+  return {};
 }
 
 bool axes_differ(const Rates& columns) {

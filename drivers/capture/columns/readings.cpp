@@ -19,8 +19,7 @@ constexpr std::size_t kMostShown = 16;  // columns; limit for messages
 constexpr double kMostInterval = 1.5;   // of an increment, in steps of the rows, which are uneven
 
 std::string capture_name(const RateCandidate& column) {
-  return std::string(column.reference ? "reference_rate" : "rate") +
-         (column.axis.empty() ? "" : "_" + column.axis) + "_radps";
+  return of_axis(column.reference ? "reference_rate" : "rate", column.axis) + "_radps";
 }
 
 // temperature_degC for "Temp (degF)": first unit of the quantity; "" for an unknown unit.
@@ -126,7 +125,7 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   }
   const Rates& first = sensors.front();
   const bool angle = !first.empty() && first[0].units.size() > 1;  // by its name
-  std::string time_units, rate_units;                              // alternatives, if unknown
+  std::string time_units, rate_units, ticks;                       // alternatives, if unknown
   bool counts = false;
   std::size_t time_columns = 0;
   for (Rates& sensor : sensors) {
@@ -141,7 +140,7 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     std::vector<std::optional<CsvTime>> times;
     if (!any_time)
       for (TimeCandidate& found : times_of(table, sensor)) {
-        if (found.units.size() > 1) time_units = instead_of(found.units);
+        if (found.units.size() > 1) time_units = instead_of(found.units), ticks = found.time.remark;
         found.time.unit = found.units.front();
         times.emplace_back(found.time);
       }
@@ -159,7 +158,8 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   } else if (out.ways.size() > 1) {
     out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
   } else if (!time_units.empty() || (!rate_units.empty() && !angle)) {
-    out.why = "the unit of the " + std::string(time_units.empty() ? "rate" : "time") + " is not named";
+    out.why =
+        "the unit of the " + std::string(time_units.empty() ? "rate" : "time") + " is not named" + ticks;
   } else if (!rate_units.empty()) {
     out.why = in_quotes(table.columns[first[0].place].header) +
               " has a unit of angle, as a rate, an angle or the turn in each sample may";

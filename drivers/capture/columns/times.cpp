@@ -98,6 +98,12 @@ bool settle_unit(TimeCandidate& found, const TableColumn& column) {
   const auto leaps = [](double before, double now) { return now - before > 1.0; };
   if (column.is_whole() && std::ranges::adjacent_find(values, leaps) != values.end())
     std::rotate(all.begin(), all.begin() + 1, all.end());
+  // Of a timer or a controller, at any rate.
+  if (column.words.has("tick") || column.words.has("ticks")) {
+    found.units = all;
+    found.time.remark = "; a tick may have any length: " + option_for(CsvTime{column.header, "62.5ns"});
+    return true;
+  }
   const double step = values.size() < 2 ? 0.0 : mean_step(values);
   for (const std::string& unit : all) {
     const double unit_s = seconds_a(unit), rate_hz = 1.0 / (step * unit_s);

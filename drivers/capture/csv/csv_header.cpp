@@ -2,14 +2,13 @@
 #include "drivers/capture/csv/csv_header.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <set>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/readings.h"
-#include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/times/row_sink.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"
@@ -36,7 +35,7 @@ class Chooser {
  public:
   Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines) : path_(path) {
     static_cast<TableForm&>(header_) = std::move(form);
-    header_.cells = header_.sample.names();
+    for (const std::string& name : header_.sample.names()) header_.cells.push_back(in_utf8(name));
     if (has_lines) line_ = header_.header_line > 0 ? header_.header_line : header_.last_line + 1;
     if (header_.layout.only_header == layout.only_header) return;
     kinds_ = "of rows of several kinds are read those of --only " +
@@ -80,9 +79,8 @@ class Chooser {
       const Words& words = column.words;
       const std::vector<std::string>& cells = column.cells;
       // A topic's name may begin with a slash. A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
-      const bool is_text = std::ranges::all_of(cells, [](const std::string& cell) {
-        return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0 || cell.starts_with('/');
-      });
+      const bool is_text = std::ranges::all_of(
+          cells, [](const std::string& cell) { return is_letter(cell.c_str()[0]) || cell.starts_with('/'); });
       if (!is_text && !(words.have(Role::one) && words.axis.empty() && column.are_counts())) continue;
       const std::set<std::string> values(cells.begin(), cells.end());
       std::size_t changes = 0;

@@ -2,16 +2,15 @@
 #include "drivers/capture/csv/line_form.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <map>
 #include <system_error>
 #include <utility>
 
 #include "drivers/capture/columns/column.h"
-#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 namespace {
@@ -20,9 +19,6 @@ constexpr std::string_view kArrow = " -> ";
 constexpr const char* kStampName = "stamp_time";
 constexpr std::size_t kLongestDate = 64;  // bytes; a bound keeps the cost of a line without blanks linear
 constexpr std::size_t kAlike = 3;         // fewest lines of one form in the file's beginning
-
-bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 // "%RAWIMUSXA," of a line with head and checksum (NovAtel OEM7 manual); else "".
 std::string_view novatel_log(std::string_view line) {
@@ -36,9 +32,9 @@ std::string_view novatel_log(std::string_view line) {
 // "UncalGyro," of a line that starts with a word; else "".
 std::string_view word_before(std::string_view line) {
   const std::string_view word = line.substr(0, line.find(','));
-  const auto in_words = [](char c) { return is_alphabetic(c) || is_decimal(c) || c == '_'; };
-  const bool is_word = word.size() < line.size() && !word.empty() && is_alphabetic(word[0]) &&
-                       std::ranges::all_of(word, in_words);
+  const auto in_words = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
+  const bool is_word =
+      word.size() < line.size() && !word.empty() && is_letter(word[0]) && std::ranges::all_of(word, in_words);
   return is_word ? line.substr(0, word.size() + 1) : std::string_view();
 }
 
@@ -94,7 +90,7 @@ struct Values {
 // End of a number or date that starts at `at`; `at` if there is none, as in "gyro2", "0x68" and "0b11".
 std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
-  if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
+  if (is_letter(before) || is_digit(before) || before == '_' || before == '.') return at;
   std::string_view rest = line.substr(at);
   const std::string_view near = rest.substr(0, kLongestDate);
   const std::string_view word = near.substr(0, near.find_first_of(",;| \t\"}])"));
@@ -102,7 +98,7 @@ std::size_t end_of_number(std::string_view line, std::size_t at) {
   if (rest.starts_with("0x") || rest.starts_with("0b")) return at;
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t digit = rest.substr(0, 4).find_first_not_of("-.");
-  if (digit > 2 || !is_decimal(rest[digit])) return at;  // excludes "nan" and "inf"
+  if (digit > 2 || !is_digit(rest[digit])) return at;  // excludes "nan" and "inf"
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.begin(), rest.end(), value);
   return error == std::errc::invalid_argument ? at : static_cast<std::size_t>(end - line.begin());
@@ -122,7 +118,7 @@ std::string label_in(std::string_view between) {
   for (const std::size_t end : {other, gap == std::string_view::npos ? gap : gap + 1})
     if (end < label.size())
       label.remove_prefix(std::min(label.find_first_not_of(" \"'", end + 1), label.size()));  // "RAW: gyro"
-  return std::ranges::any_of(label, is_alphabetic) ? std::string(label) : "";
+  return std::ranges::any_of(label, is_letter) ? std::string(label) : "";
 }
 
 Values values_in(std::string_view line) {

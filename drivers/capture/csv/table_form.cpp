@@ -11,7 +11,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
-#include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/row_sink.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 

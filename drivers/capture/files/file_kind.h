@@ -2,24 +2,15 @@
 // Kind of a file by its ending (in any case) and first bytes, and how to convert files of other programs.
 #pragma once
 
-#include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <string>
 #include <string_view>
 
 namespace ifog {
 
-// ending: lower case, with its point.
-constexpr bool has_ending(std::string_view name, std::string_view ending) {
-  if (name.size() < ending.size()) return false;
-  name.remove_prefix(name.size() - ending.size());
-  return std::equal(name.begin(), name.end(), ending.begin(), [](char c, char e) {
-    return (c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c) == e;
-  });
-}
+inline bool is_packed_name(std::string_view name) { return boost::iends_with(name, ".gz"); }
 
-constexpr bool is_packed_name(std::string_view name) { return has_ending(name, ".gz"); }
-
-constexpr std::string_view unpacked_name(std::string_view name) {
+inline std::string_view unpacked_name(std::string_view name) {
   if (is_packed_name(name)) name.remove_suffix(3);
   return name;
 }

@@ -97,11 +97,6 @@ Shape shape_of(hid_t dataset, const std::string& name) {
   return {across ? 1 : 0, size[across ? 1 : 0], size[across ? 0 : 1]};
 }
 
-std::string without_index(const std::string& name) {
-  const std::size_t open = name.rfind('[');
-  return open != std::string::npos && name.back() == ']' ? name.substr(0, open) : name;
-}
-
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }

@@ -25,7 +25,7 @@ bool month_name(TextCursor& rest, int& value) {
   return false;
 }
 
-// hh:mm, hh:mm:ss or hh:mm:ss.f…, in twelve hours with AM or PM; mm:ss.f…, as spreadsheets show it
+// hh:mm, hh:mm:ss, hh:mm:ss.f… or hh:mm:ss:mmm, in twelve hours with AM or PM; mm:ss.f…, as spreadsheets show it
 bool time_of_day(TextCursor& rest, bool seconds_needed, Decimal& time) {
   int hours = 0, minutes = 0, seconds = 0;
   if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
@@ -37,8 +37,9 @@ bool time_of_day(TextCursor& rest, bool seconds_needed, Decimal& time) {
     return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
   std::optional<Decimal> fraction = Decimal{};
-  if (seconds_given && rest.one_of(".,")) fraction = Decimal::parse("." + std::string(rest.digits()));
-  if (!fraction) return false;
+  const bool milliseconds = rest.at(':');  // all three digits: fewer of them are no fraction
+  if (seconds_given && rest.one_of(".,:")) fraction = Decimal::parse("." + std::string(rest.digits()));
+  if (!fraction || (milliseconds && fraction->decimals != 3)) return false;
   const bool after_noon = rest.text(" PM") || rest.text(" pm");
   if (after_noon || rest.text(" AM") || rest.text(" am")) {
     if (hours < 1 || hours > 12) return false;

@@ -29,7 +29,7 @@ enum class DateOrder { either, month_first, day_first };
 
 // Seconds since 1970 of "2026-05-01T12:00:00.25Z"; nullopt if the text is no date. Accepted: date and time or date
 // alone; "/" or "_" for "-"; the year last, as in "1.5.2026" (day first) and "5/1/2026" (by `order`); month names
-// as in "01-May-2026"; a space or "_" for "T"; "_" for ":"; AM or PM; missing seconds; a decimal comma; offsets
+// as in "01-May-2026"; a space or "_" for "T"; "_" for ":"; AM or PM; missing seconds; a decimal comma or colon; offsets
 // "+02:00", "+0200", "+02", "UTC" (default UTC). A time of day alone gives seconds since midnight. A leap second
 // counts as the next second.
 [[nodiscard]] std::optional<Decimal> date_time(std::string_view text, DateOrder order = DateOrder::either);

@@ -74,8 +74,12 @@ void RowBlock::split_off(std::size_t from, RowBlock& to) {
   for (std::size_t c = 0; c < columns.size(); ++c) behind(columns[c], to.columns[c]);
 }
 
-std::string RowNotes::at(std::size_t line, const std::string& what) const {
+std::string at_line(const std::string& path, std::size_t line, const std::string& what) {
   return path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what;
+}
+
+void fail_at(const std::string& path, std::size_t line, const std::string& what) {
+  throw std::runtime_error(at_line(path, line, what));
 }
 
 void RowNotes::dropped(const Fault& found, const std::string& kind) {
@@ -84,10 +88,6 @@ void RowNotes::dropped(const Fault& found, const std::string& kind) {
         found.first + "; " +
             (count == 1 ? "this " + kind + " is" : std::to_string(count) + " such " + kind + "s are") +
             " dropped");
-}
-
-void RowNotes::refuse(std::size_t line, const std::string& what) const {
-  throw std::runtime_error(at(line, what));
 }
 
 void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {

@@ -86,6 +86,11 @@ class RowBatch {
   RowBlock rows_;
 };
 
+// "PATH:LINE: WHAT"; without LINE if it is 0.
+[[nodiscard]] std::string at_line(const std::string& path, std::size_t line, const std::string& what);
+// Throws std::runtime_error with that line.
+[[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
+
 // Reports of a reader besides the rows; complete after the last row.
 struct RowNotes {
   // Rows from `row` on are on consecutive lines from `line` on.
@@ -101,13 +106,11 @@ struct RowNotes {
   std::vector<std::string> faults;         // cells read as missing, one line per column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, if known
 
-  // "PATH:LINE: WHAT"; without LINE if it is 0.
-  [[nodiscard]] std::string at(std::size_t line, const std::string& what) const;
-  void notice(std::size_t line, const std::string& what) { notices.push_back(at(line, what)); }
-  void fault(std::size_t line, const std::string& what) { faults.push_back(at(line, what)); }
+  void notice(std::size_t line, const std::string& what) { notices.push_back(at_line(path, line, what)); }
+  void fault(std::size_t line, const std::string& what) { faults.push_back(at_line(path, line, what)); }
   // Of dropped lines or rows: "FIRST; 3 such rows are dropped"; kind: "row".
   void dropped(const Fault& found, const std::string& kind);
-  [[noreturn]] void refuse(std::size_t line, const std::string& what) const;
+  [[noreturn]] void refuse(std::size_t line, const std::string& what) const { fail_at(path, line, what); }
 
   // Line of a data row (counted from 0), for messages; 0 without lines.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;

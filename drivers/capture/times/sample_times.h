@@ -56,8 +56,9 @@ class SampleTimes {
   // nullopt: no stamps. To be called before the first sample.
   void keep_stamps(std::optional<std::int64_t> zero_ns) { arrivals_.zero_of_stamps_ns = zero_ns; }
 
-  // Origin of the times; known from the first sample on.
+  // Origin of the times, and the last one, since then; known from the first sample on.
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
+  [[nodiscard]] double last_s() const { return last_s_; }
   [[nodiscard]] const SampleCounts& counts() const { return counts_; }
   // Time by the device's clock, in use so far, per time of as many samples at the nominal rate; 1: unknown.
   [[nodiscard]] double clock_runs() const {

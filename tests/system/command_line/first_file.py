@@ -252,7 +252,7 @@ class Checks:
         assert "#2" not in said.split("to read it: ")[1], f"an acceleration is offered as a rate: {said}"
         _, said = typed(self.file("both.csv", self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z, 3 * x, 3 * y, 3 * z))))
         assert "more than one column may be the rate" in said and "=#2:" in said and "=#5:" in said, said
-        for name, header in (("attitude.csv", "t_s,w,x,y,z"), ("strokes.csv", "time_seconds,q_w,q_x,q_y,q_z"), ("pose.csv", "t_s,x,y,z,qx,qy,qz,qw")):
+        for name, header in (("attitude.csv", "t_s,w,x,y,z"), ("strokes.csv", "time_seconds,q_w,q_x,q_y,q_z"), ("pose.csv", "t_s,x,y,z,qx,qy,qz,qw"), ("rotation.csv", "t_s,rot_x,rot_y,rot_z,rot_w")):
             _, said = typed(self.file(name, [header, *self.rows(lambda i, x, y, z: (i / RATE_HZ, 0.9999, 0.001 * (i % 7), -0.002, 0.007, 0, 0, 0)[:len(header.split(","))])]))
             assert "no rate column among" in said, f"{name}: {said}"
         _, said = typed(self.file("acceleration.csv", ["Attribute,Time stamp,x,y,z", *self.rows(lambda i, x, y, z: ("Acceleration", 63156 + 5 * i, 0.12, 0.06, 1.02 + 1e-3 * (i % 5)))]))

@@ -108,18 +108,16 @@ struct Log : ifog::CandumpLosses {
   std::vector<ifog_can_frame> frames;
   std::vector<std::string> on;  // of each frame the interface
 };
-Log read(ifog::InputFile& file, std::string_view interface = {}) {
+Log read(const std::string& text, std::string_view interface = {}) {
+  ifog::InputFile file("log", text);
   Log log;
-  static_cast<ifog::CandumpLosses&>(log) =
-      ifog::for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
+  static_cast<ifog::CandumpLosses&>(log) = ifog::for_each_candump_frame(
+      file, interface, [](const ifog_can_frame&) { return false; },
+      [&](const ifog_can_frame& frame, std::string_view from) {
         log.frames.push_back(frame);
         log.on.emplace_back(from);
       });
   return log;
-}
-Log read(const std::string& text, std::string_view interface = {}) {
-  ifog::InputFile file("log", text);
-  return read(file, interface);
 }
 
 TEST(CandumpFile, RefusesWithFileAndLine) {
@@ -183,13 +181,13 @@ TEST(CandumpParser, WhatCandumpSaysWasDroppedIsCounted) {
   EXPECT_EQ(read(text, "can0").dropped, 5U);
 }
 
-std::vector<std::int64_t> micros(const Log& log) {
-  std::vector<std::int64_t> out;
+using Micros = std::vector<std::int64_t>;
+
+Micros micros(const Log& log) {
+  Micros out;
   for (const ifog_can_frame& f : log.frames) out.push_back((f.arrival_ns - log.frames[0].arrival_ns) / 1000);
   return out;
 }
-
-using Micros = std::vector<std::int64_t>;
 
 TEST(CandumpScreen, TimesOfEachKindGoOn) {
   const auto lines = [](const std::vector<const char*>& times, const char* interface = "can0") {

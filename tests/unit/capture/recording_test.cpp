@@ -41,10 +41,9 @@ class Recording : public testing::Test, protected ifog::test::OwnFolder {
   // Encodes with one instance of the driver and decodes with another.
   Capture there_and_back(const Capture& capture, const std::string& driver, const DriverSettings& settings) {
     const auto plugin = ifog::find_plugin(driver, ifog::plugin_folders());
-    const DriverSettings all =
-        ifog::with_rate(ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)), *plugin, settings);
+    const DriverSettings all = ifog::with_rate(capture, *plugin, settings);
     ifog::DriverInstance out(plugin, all);
-    ifog::CaptureEncoder encoder(capture, out, ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)));
+    ifog::CaptureEncoder encoder(capture, out);
     std::string file;
     if (out.takes_can()) {
       file = path("frames.log");
@@ -209,7 +208,7 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
   capture.rate_radps[0][4] = 1e6;
   const auto plugin = ifog::find_plugin("template", ifog::plugin_folders());
   ifog::DriverInstance driver(plugin, {});
-  ifog::CaptureEncoder encoder(capture, driver, ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)));
+  ifog::CaptureEncoder encoder(capture, driver);
   std::vector<std::uint8_t> bytes;
   const auto encode = [&] {
     while (encoder.next(bytes)) {
@@ -219,7 +218,7 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
             "at 0.02 s: driver template: rate is 1000000.000000 rad/s, expected within ±37");
   EXPECT_EQ(bytes.size(), 4U * 8U);
   const Capture three = wave({"x", "y", "z"});
-  EXPECT_EQ(ifog::test::refusal([&] { ifog::CaptureEncoder(three, driver, 200.0, "q"); }),
+  EXPECT_EQ(ifog::test::refusal([&] { ifog::CaptureEncoder(three, driver, "q"); }),
             "--axis is 'q', expected none for a capture of several axes");
 }
 

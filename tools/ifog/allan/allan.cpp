@@ -40,19 +40,12 @@ const char* estimator_name(Deviation kind) {
                                         : "overlapping";
 }
 
-ordered_json theo1_json(const std::vector<LongPoint>& points) {
-  ordered_json out;
-  for (const char* key : {"tau_s", "adev_radps", "lower_radps", "upper_radps", "degrees_of_freedom", "bias"})
-    out[key] = ordered_json::array();
-  for (const LongPoint& point : points) {
-    out["tau_s"].push_back(point.tau);
-    out["adev_radps"].push_back(std::sqrt(point.variance));
-    out["lower_radps"].push_back(point.interval.lower_radps);
-    out["upper_radps"].push_back(point.interval.upper_radps);
-    out["degrees_of_freedom"].push_back(point.interval.degrees);
-    out["bias"].push_back(point.bias);
-  }
-  return out;
+// Adds a point to the arrays of a curve.
+void add_point(ordered_json& curve, double variance, const AllanInterval& interval) {
+  curve["adev_radps"].push_back(std::sqrt(variance));
+  curve["lower_radps"].push_back(interval.lower_radps);
+  curve["upper_radps"].push_back(interval.upper_radps);
+  curve["degrees_of_freedom"].push_back(interval.degrees);
 }
 
 void print_point(double tau_s, double variance, const AllanInterval& interval, const char* remark) {
@@ -100,14 +93,15 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
       axis[key] = ordered_json::array();
     for (std::size_t i = 0; i < record.points.size(); ++i) {
       const AllanInterval& interval = record.intervals[i];
-      axis["adev_radps"].push_back(std::sqrt(record.points[i].variance));
-      axis["lower_radps"].push_back(interval.lower_radps);
-      axis["upper_radps"].push_back(interval.upper_radps);
-      axis["degrees_of_freedom"].push_back(interval.degrees);
+      add_point(axis, record.points[i].variance, interval);
       axis["noise_type"].push_back(term_name(interval.strongest));
       axis["terms"].push_back(record.points[i].terms);
     }
-    if (!record.longer.empty()) axis["theo1"] = theo1_json(record.longer);
+    for (const LongPoint& point : record.longer) {
+      axis["theo1"]["tau_s"].push_back(point.tau);
+      add_point(axis["theo1"], point.variance, point.interval);
+      axis["theo1"]["bias"].push_back(point.bias);
+    }
     axis["trusted_tau_s"] = record.trusted_tau_s;
     // Without a fit, values and errors are unknown.
     axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});

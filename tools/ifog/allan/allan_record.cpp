@@ -82,15 +82,13 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
 
 Samples less_reference(const std::string& name, const LongTable& table, std::span<const double> rate,
                        const std::string& axis) {
-  const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
-  const auto column =
-      std::ranges::find_if(table.columns, [&](const LongColumn& c) { return c.name == wanted; });
-  if (column == table.columns.end())
+  const std::string wanted = of_axis("reference_rate", axis) + "_radps";
+  const LongColumn* const reference = table.column(wanted);
+  if (reference == nullptr)
     throw refusal("{}: no column {}, expected one for --minus-reference", name, wanted);
-  const std::span<const double> reference = column->values;
   Samples error;
   error.reserve(rate.size());
-  for (std::size_t i = 0; i < rate.size(); ++i) error.push_back(rate[i] - reference[i]);
+  for (std::size_t i = 0; i < rate.size(); ++i) error.push_back(rate[i] - reference->values[i]);
   return error;
 }
 
@@ -106,13 +104,9 @@ std::size_t same_rows(std::span<const double> a, std::span<const double> b) {
 // not the filter's.
 std::size_t start_of_filter(const LongTable& table, const LoggedRate& logged) {
   if (logged.signal != "denoised") return 0;
-  const std::string wanted = "compensated" + (logged.axis.empty() ? "" : "_" + logged.axis) + "_radps";
-  for (const LongColumn& other : table.columns) {
-    if (other.name != wanted) continue;
-    const std::size_t same = same_rows(logged.column.values, other.values);
-    return same < table.size() ? same : 0;
-  }
-  return 0;
+  const LongColumn* const before = table.column(of_axis("compensated", logged.axis) + "_radps");
+  const std::size_t same = before == nullptr ? 0 : same_rows(logged.column.values, before->values);
+  return same < table.size() ? same : 0;
 }
 
 // The rates to analyse; throws if there are none.
@@ -127,7 +121,7 @@ std::vector<LoggedRate> rates_of(const AnalysedPart& part, const std::string& wa
     if (std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
     if (!wanted.empty() && axis != wanted) continue;
     if (is_dead(rows.of(column.values)))
-      left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
+      left_out.push_back(of_axis(signal, axis));
     else
       rates.push_back({part, column, signal, axis, rows.of(column.values)});
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/columns/column_names.h"
 #include "filters/allan/confidence.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/stretches.h"
@@ -87,7 +88,7 @@ struct LoggedRate {
   std::string signal, axis;           // as in AllanRecord
   std::span<const double> rate = {};  // in the part's rows
 
-  [[nodiscard]] std::string name() const { return axis.empty() ? signal : signal + "_" + axis; }
+  [[nodiscard]] std::string name() const { return of_axis(signal, axis); }
 };
 
 // Deviations, noise terms and changes of the noise, at rest. Throws std::runtime_error with one line.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_input.h"
 
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -144,24 +146,24 @@ FileKind CaptureInput::kind(const InputFile& file) const {
   return has_driver() ? FileKind::bytes : FileKind::capture;
 }
 
-RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
-                                              const std::function<void(const ifog_sample&)>& sink) const {
+void CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
+                                   const std::function<void(const ifog_sample&)>& sink) const {
   const RecordingCounts counts =
       kind(file) == FileKind::lcm_log
           ? decode_logged_bytes(file, instance, channel, sink)
           : decode_recording(file, instance, instance.takes_can() ? channel : "", sink);
-  if (counts.samples != 0) return counts;
-  std::string why;
-  for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
-  throw refusal("{}: driver {} finds no sample in it{}", file.path(), driver_name(),
-                why.empty() ? "" : " (" + why + ")");
+  const std::vector<std::string> lost = losses(counts);
+  if (counts.samples == 0)
+    throw refusal("{}: driver {} finds no sample in it{}", file.path(), driver_name(),
+                  lost.empty() ? "" : " (" + boost::join(lost, "; ") + ")");
+  for (const std::string& loss : lost) warn("{}: {}\n", file.path(), loss);
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
   std::string other = foreign_can_log(file.head());
   if (other.empty() && !has_driver()) other = foreign_container(file.head());
   if (!other.empty()) throw refusal("{}: {}", file.path(), other);
-  if (has_ending(file.path(), ".toml"))
+  if (boost::iends_with(file.path(), ".toml"))
     throw refusal("{}: is a TOML file, expected a capture; a model is given by --model FILE", file.path());
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
@@ -214,11 +216,9 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   DriverInstance instance = make_driver();
   CaptureBuilder builder(instance.description(), sink);
   if (instance.takes_can()) builder.keep_stamps(zero_of_stamps(file.head()));
-  const RecordingCounts counts = naming(file.path(), [&] {
-    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
-  });
-  for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("{}: {}\n", file.path(), line);
+  naming(file.path(),
+         [&] { for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); }); });
+  for (const std::string& line : builder.remarks()) warn("{}: {}\n", file.path(), line);
   builder.finish();
   return {};
 }

@@ -81,13 +81,13 @@ struct CaptureInput {
   // with one.
   [[nodiscard]] FileKind kind(const InputFile& file) const;
 
-  // Samples as the driver delivers them, bit for bit as the daemon gets them. Throws std::runtime_error with
-  // one line, also if the driver finds nothing in the file.
-  RecordingCounts for_each_sample(InputFile& file, DriverInstance& instance,
-                                  const std::function<void(const ifog_sample&)>& sink) const;
+  // Samples as the driver delivers them, bit for bit as the daemon gets them. Prints what the driver rejected on
+  // standard error, one line per counter. Throws std::runtime_error with one line, also if the driver finds nothing in
+  // the file.
+  void for_each_sample(InputFile& file, DriverInstance& instance,
+                       const std::function<void(const ifog_sample&)>& sink) const;
 
-  // Reads any kind in blocks; the only place that distinguishes formats. Prints what the driver rejected on
-  // standard error, one line per counter. Throws std::runtime_error with one line.
+  // Reads any kind in blocks; the only place that distinguishes formats. Throws as above.
   RowNotes read_rows(InputFile& file, RowSink& sink) const;
   // Reads a table of any length with the wanted columns; empty: all.
   [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;

@@ -15,7 +15,6 @@
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/files/output_file.h"
-#include "drivers/row_times/sample_clock.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
@@ -93,15 +92,14 @@ void write_recording(const LongTable& table, const std::string& from, const std:
   if (!input.has_driver())
     throw WrongUsage(to, "is no .csv or .h5, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
-  const double rate_hz = table.size() > 1 ? sample_rate_hz(sample_clock(table.time_s).period_s) : 0.0;
-  DriverInstance driver(plugin, with_rate(rate_hz, *plugin, input.settings()));
+  DriverInstance driver(plugin, with_rate(capture, *plugin, input.settings()));
   const bool log = is_standard_output(to) ? driver.takes_can() : file_kind(to) == FileKind::candump;
   if (log != driver.takes_can())
     throw WrongUsage(to, "driver " + input.driver_name() + " speaks " +
                              (driver.takes_can() ? "CAN, expected a name ending in .log"
                                                  : "bytes, expected a name ending in .bin or .kvh"));
   try {
-    CaptureEncoder encoder(capture, driver, rate_hz, axis);
+    CaptureEncoder encoder(capture, driver, axis);
     for (const std::string& notice : encoder.notices()) warn("{}: {}\n", from, notice);
     if (log) {
       const std::string interface = input.channel.empty() ? "vcan0" : input.channel;

@@ -6,15 +6,12 @@
 #include <span>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
-
-std::string rate_of(const std::string& axis) { return axis.empty() ? "rate" : "rate_" + axis; }
 
 struct RateValues {
   std::size_t values = 0, missing = 0, first_missing = 0;
@@ -48,7 +45,7 @@ std::vector<std::string> unusable(const CaptureView& capture, const std::string&
   const bool others = dead + std::ranges::count_if(axes, &RateValues::stuck) < std::ssize(axes);
   std::vector<std::string> out;
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    const std::string column = rate_of(capture.axes[a]);
+    const std::string column = of_axis("rate", capture.axes[a]);
     if (axes[a].values == 0) {
       tell_left_out(name, column, capture.size());
     } else if (axes[a].stuck() && others) {
@@ -81,9 +78,7 @@ void tell_left_out(const std::string& name, const std::string& column, std::size
 
 std::string expected_axes(const std::vector<std::string>& axes) {
   if (axes == std::vector<std::string>{""}) return "none, the capture has one axis";
-  std::string list;
-  for (const std::string& axis : axes) list += (list.empty() ? "" : ", ") + in_quotes(axis);
-  return "one of " + list;
+  return "one of " + listed(axes);
 }
 
 void refuse_without_rates(const std::string& name, std::size_t rows) {
@@ -125,7 +120,8 @@ void leave_out_dead_axes(LongTable& table, const std::string& name) {
       alive += column.known ? 1 : 0;
     }
   if (rates > 0 && alive == 0) refuse_without_rates(name, table.size());
-  for (const std::string& dead : table.drop_dead_axes()) tell_left_out(name, rate_of(dead), table.size());
+  for (const std::string& dead : table.drop_dead_axes())
+    tell_left_out(name, of_axis("rate", dead), table.size());
 }
 
 }  // namespace ifog::tools

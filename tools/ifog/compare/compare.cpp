@@ -215,9 +215,7 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
 void run_compare(const CompareArguments& options) {
   const PreparedCaptures prepared = options.input.prepared(
       {options.capture}, {.part = options.part, .wanted = [](const std::string& column) {
-                            std::string axis;
-                            return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) ||
-                                   is_other_rate(column);
+                            return is_rate_column(column) || is_other_rate(column);
                           }});
   const CaptureView& capture = prepared.views.front();
   ComparisonInput in;

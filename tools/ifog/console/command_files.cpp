@@ -77,7 +77,7 @@ void expect_no_other_kind(const std::string& option, const std::string& path,
       ".ps",  ".eps",  ".zip",  ".bz2", ".xz",   ".zst",   ".tar",    ".tgz"};
   if (path.empty() || is_standard_output(path) || !file_identity(path)) return;
   const auto says = [name = unpacked_name(path)](std::string_view ending) {
-    return has_ending(name, ending);
+    return boost::iends_with(name, ending);
   };
   if (std::ranges::any_of(endings, says) || std::none_of(std::begin(kKnown), std::end(kKnown), says)) return;
   throw WrongUsage(option, "is " + in_quotes(path, kLongestMessage) + ", expected a name ending in " +

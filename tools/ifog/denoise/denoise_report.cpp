@@ -38,7 +38,7 @@ bool says_anything(const FilterChoice& choice) {
 void tell_unusable(const std::string& name, const DenoisedRows& rows, const OfflineResult& result) {
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
     const DenoisedRows::AxisMoments& axis = rows.moments(a);
-    const std::string column = result.axes[a].empty() ? "rate" : "rate_" + result.axes[a];
+    const std::string column = of_axis("rate", result.axes[a]);
     const std::string missing = missing_in_words(column, axis.missing, rows.written(), axis.first_missing_s);
     if (!missing.empty()) warn("{}: {}\n", name, missing);
     if (axis.stuck > 0)

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "drivers/capture/columns/column_names.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/usable_axes.h"
 
@@ -23,13 +24,12 @@ void DenoisedRows::begin(const std::vector<std::string>& axes, const OfflineSett
   columns_.axes.resize(axes.size());
   std::vector<std::string> names{"time_s"};
   for (const std::string& axis : axes) {
-    const std::string suffix = (axis.empty() ? "" : "_" + axis) + "_";
     for (const char* const name : {"raw", "compensated", "denoised"})
-      names.push_back(name + suffix + "radps");
-    names.push_back("variance" + suffix + "rad2ps2");
+      names.push_back(of_axis(name, axis) + "_radps");
+    names.push_back(of_axis("variance", axis) + "_rad2ps2");
     if (!smooth_) continue;
-    names.push_back("smoothed" + suffix + "radps");
-    names.push_back("smoothed_variance" + suffix + "rad2ps2");
+    names.push_back(of_axis("smoothed", axis) + "_radps");
+    names.push_back(of_axis("smoothed_variance", axis) + "_rad2ps2");
   }
   file_.emplace(output_, "", names);
 }

@@ -48,7 +48,7 @@ class DenoisedRows {
   void follow(const CaptureView& capture) { reference_trial_.follow(capture); }
   // Call it once, before the first sample.
   void begin(const std::vector<std::string>& axes, const OfflineSettings& settings);
-  // Sets the origin of all times; before the first sample.
+  // Sets the origin of all times, always the same; before the first sample.
   void count_from(const TimeOrigin& origin) { origin_ = origin; }
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // True if the sample is in the part.

@@ -5,6 +5,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "drivers/capture/times/sample_times.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
@@ -24,9 +25,12 @@ class FlightChain {
         first_(settings_()),
         now_(chain_settings(first_)),
         chain_(now_, first_, rows),
-        times_(driver_.description(), rows),
+        rows_(rows),
+        times_(driver_.description()),
         runs_{flight.header().run, flight.header().settings},
-        missed_{!begins_a_run(flight.header()), {}} {}
+        missed_{!begins_a_run(flight.header()), {}} {
+    times_.allow_restarts();
+  }
 
   void take(const RecordedSample& recorded) {
     read_sample(recorded.sample, now_.facts.frame_channels, reading_);
@@ -39,21 +43,22 @@ class FlightChain {
       reading_.channel[c] = value.value;
       reading_.channel_age_s[c] = value.age_s(recorded.read_ns);
     }
-    times_.advance(recorded.sample);
-    if (!chain_.run(reading_, times_.now_s())) return;
-    missed_.sample(times_.now_s());
-    merged_.sample(times_.now_s());
+    (void)times_.next(recorded.sample);
+    rows_.count_from(times_.origin());
+    if (!chain_.run(reading_, times_.last_s())) return;
+    missed_.sample(times_.last_s());
+    merged_.sample(times_.last_s());
   }
 
   void discontinuity() {
     chain_.discontinuity();
-    times_.times().discontinuity();
+    times_.discontinuity();
   }
   void missing() { missed_.before_next = true; }
   void merged() { merged_.before_next = true; }
 
   void file(const FlightHeader& header) {
-    times_.times().go_on_as(driver_.description());
+    times_.go_on_as(driver_.description());
     const bool another_run = header.run != runs_.run;
     if (!another_run && (fixed_ || header.settings == runs_.settings)) return;
     runs_.run = header.run;
@@ -126,7 +131,8 @@ class FlightChain {
   OfflineSettings first_;
   ChainSettings now_;
   ChainRun chain_;
-  OfflineTimes times_;
+  DenoisedRows& rows_;
+  SampleTimes times_;
   Runs runs_;
   Reading reading_;
   Occurrence missed_;  // samples or the beginning of a run
@@ -143,8 +149,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                                 [&] { chain.discontinuity(); }, [&] { chain.missing(); },
                                 [&](const FlightHeader& header) { chain.file(header); },
                                 [&](std::uint64_t) { chain.merged(); }};
-  const RecordingCounts counts = flight.for_each_sample(driver, samples);
-  for (const std::string& loss : losses(counts)) warn("{}: {}\n", flight.header().sensor, loss);
+  flight.for_each_sample(driver, samples);
   return chain.finish();
 }
 

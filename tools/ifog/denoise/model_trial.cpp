@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "drivers/capture/columns/column_names.h"
 #include "filters/model_file/form.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/console/say.h"
@@ -93,12 +94,10 @@ void ReferenceTrial::tell(const std::string& capture) const {
     const double n = axis.growth.count(), least = kCertain * axis.growth.deviation() / std::sqrt(n);
     if (n < kFewest || !(axis.growth.mean() > std::fmax(least, kMuch * axis.raw_square.mean()))) continue;
     warn(
-        "{}: 1 s means of the corrected rate are {:.4g} deg/h (RMS) from reference_rate_{}radps, those of "
-        "the "
-        "raw rate {:.4g}: the model does not hold here; run ifog diagnose on both captures together\n",
+        "{}: 1 s means of the corrected rate are {:.4g} deg/h (RMS) from {}_radps, those of the raw rate "
+        "{:.4g}: the model does not hold here; run ifog diagnose on both captures together\n",
         capture, std::sqrt(axis.compensated_square.mean()) / kDegreePerHour,
-        capture_->axes[i].empty() ? "" : capture_->axes[i] + "_",
-        std::sqrt(axis.raw_square.mean()) / kDegreePerHour);
+        of_axis("reference_rate", capture_->axes[i]), std::sqrt(axis.raw_square.mean()) / kDegreePerHour);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture.h"
+#include "drivers/capture/times/sample_times.h"
 #include "drivers/row_times/sample_clock.h"
 #include "filters/model_file/channel_names.h"
 #include "tools/ifog/console/errors.h"
@@ -97,16 +98,6 @@ void add(const IncrementerCounts& from, const IncrementerCounts& less, Increment
 
 }  // namespace
 
-OfflineTimes::OfflineTimes(const ifog_description& description, DenoisedRows& rows)
-    : times_(description), rows_(rows) {
-  times_.allow_restarts();
-}
-
-void OfflineTimes::advance(const ifog_sample& sample) {
-  if (const std::optional<SampleTimes::Stamped> stamped = times_.next(sample)) now_s_ = stamped->since_s;
-  if (!std::exchange(begun_, true)) rows_.count_from(times_.origin());
-}
-
 OfflineResult denoise_capture(const CaptureView& capture, const std::string& name,
                               const OfflineSettings& settings, DenoisedRows& rows) {
   const std::vector<CaptureView::Channel> channels = chosen_channels(capture, settings.model.get());
@@ -147,14 +138,15 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   // The recording has no channels of other sources: they have no value and infinite age.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
-  OfflineTimes times(driver.description(), rows);
-  if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
-  const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
-    times.advance(sample);
+  SampleTimes times(driver.description());
+  times.allow_restarts();
+  if (driver.takes_can()) times.keep_stamps(zero_of_stamps(file.head()));
+  input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
+    (void)times.next(sample);
+    rows.count_from(times.origin());
     read_sample(sample, facts.frame_channels, reading);
-    chain.run(reading, times.now_s());
+    chain.run(reading, times.last_s());
   });
-  for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
 }
 

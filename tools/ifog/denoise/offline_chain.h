@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/times/sample_times.h"
 #include "drivers/host/driver_instance.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
@@ -29,23 +28,6 @@ struct OfflineSettings {
   // Number of the first sample if this is a part of a longer recording; otherwise the recording's own number.
   std::optional<std::uint64_t> first_sequence;
   std::optional<double> since_power_up_s;  // ChainSettings::since_power_up_s
-};
-
-// Times of a recording's samples, the same in every command. If a device's clock jumps back, the times
-// continue, as in the daemon.
-class OfflineTimes {
- public:
-  OfflineTimes(const ifog_description& description, DenoisedRows& rows);
-  // Call it before the chain's output for the sample is passed on.
-  void advance(const ifog_sample& sample);
-  [[nodiscard]] double now_s() const { return now_s_; }
-  [[nodiscard]] SampleTimes& times() { return times_; }
-
- private:
-  SampleTimes times_;
-  DenoisedRows& rows_;
-  double now_s_ = 0.0;
-  bool begun_ = false;
 };
 
 struct OfflineResult {

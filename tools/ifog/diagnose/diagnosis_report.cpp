@@ -73,12 +73,6 @@ Json alternative_json(const Indistinguishable& each) {
   return json;
 }
 
-Json figures_json(const std::map<std::string, double>& figures) {
-  Json json = Json::object();
-  for (const auto& [name, value] : figures) json[name] = value;
-  return json;
-}
-
 Json unexplained_json(const Diagnosis& diagnosis) {
   const Unexplained& unexplained = diagnosis.unexplained;
   Json json = {{"fraction", unexplained.fraction},
@@ -93,10 +87,6 @@ Json unexplained_json(const Diagnosis& diagnosis) {
     json["coefficient"] = diagnosis.hysteresis->coefficient;
   }
   return json;
-}
-
-Json heading_json(const HeadingPrediction& heading) {
-  return {{"aligned_s", heading.aligned_s}, {"after_s", heading.after_s}, {"sigma_rad", heading.sigma_rad}};
 }
 
 Json delays_json(const std::vector<ReferenceDelay>& delays) {
@@ -211,12 +201,16 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     return d.bias ? Json{{"value", d.bias->value}, {"std_error", d.bias->std_error}, {"unit", "rad/s"}}
                   : Json(nullptr);
   });
-  put("before", [](const Diagnosis& d) { return figures_json(d.before); });
-  put("after", [](const Diagnosis& d) { return figures_json(d.after); });
+  put("before", [](const Diagnosis& d) { return Json(d.before); });
+  put("after", [](const Diagnosis& d) { return Json(d.after); });
   list("indistinguishable", &Diagnosis::indistinguishable,
        [](const Indistinguishable& pair) { return alternative_json(pair); });
   put("unexplained", [](const Diagnosis& d) { return unexplained_json(d); });
-  put("heading_prediction", [](const Diagnosis& d) { return heading_json(d.heading); });
+  put("heading_prediction", [](const Diagnosis& d) {
+    return Json{{"aligned_s", d.heading.aligned_s},
+                {"after_s", d.heading.after_s},
+                {"sigma_rad", d.heading.sigma_rad}};
+  });
   put("reference_delay", [](const Diagnosis& d) { return delays_json(d.reference_delays); });
   put("channel_delays", [](const Diagnosis&) { return Json::array(); });  // a key that was promised
   json["remarks"] = Json::array();

@@ -14,6 +14,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
@@ -47,8 +48,7 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   record.rate_radps = capture.rate_radps[axis];
   if (!capture.reference_rate_radps[axis].empty())
     record.reference_radps = capture.reference_rate_radps[axis];
-  record.reference_name =
-      capture.axes[axis].empty() ? "reference_rate_radps" : "reference_rate_" + capture.axes[axis] + "_radps";
+  record.reference_name = of_axis("reference_rate", capture.axes[axis]) + "_radps";
   for (const CaptureView::Channel& column : capture.channels)
     if (!reads_as_difference(column.name)) record.channels.push_back({column.name, column.values});
   for (std::size_t other = 0; other < capture.axes.size(); ++other) {

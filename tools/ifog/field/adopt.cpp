@@ -49,7 +49,7 @@ struct Watched {
 
 // Recordings before the exchange, in which effects with memory settle.
 constexpr std::size_t kFilesBefore = 3;
-constexpr std::uint64_t kMostBytesBefore = 64'000'000;
+constexpr double kMostBytesBefore = 64e6;
 
 // Number of rows in those recordings; unreadable recordings are skipped.
 std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
@@ -69,17 +69,10 @@ void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const M
     return;
   }
   try {
-    std::vector<RecordedFile> all = recorded_files(sensor), settling;
-    std::uint64_t bytes = 0;
-    while (!all.empty() && all.front().number <= recorded_before) {
-      settling.push_back(all.front());
-      bytes += all.front().bytes;
-      all.erase(all.begin());
-    }
-    while (settling.size() > kFilesBefore || bytes > kMostBytesBefore) {
-      bytes -= settling.front().bytes;
-      settling.erase(settling.begin());
-    }
+    std::vector<RecordedFile> all = recorded_files(sensor);
+    const auto first = std::ranges::upper_bound(all, recorded_before, {}, &RecordedFile::number);
+    std::vector<RecordedFile> settling = newest({all.begin(), first}, kFilesBefore, kMostBytesBefore);
+    all.erase(all.begin(), first);
     if (all.empty()) {
       out.not_weighed = "nothing was recorded meanwhile";
       return;

@@ -53,15 +53,6 @@ constexpr double kMostLoss = 0.02;
 
 const std::string kCannotBeJudged = "the recordings could not be evaluated; the reason is in the night's log";
 
-// The newest files of at most that many bytes in total, but at least one.
-std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_bytes) {
-  std::size_t from = files.size() - 1;
-  double bytes = static_cast<double>(files[from].bytes);
-  while (from > 0 && (bytes += static_cast<double>(files[from - 1].bytes)) <= most_bytes) --from;
-  files.erase(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(from));
-  return files;
-}
-
 bool pays(const AxisGain& gain) {
   const PromiseVerdict found = verdict(gain.kept);
   if (found != PromiseVerdict::kept && found != PromiseVerdict::in_part) return false;
@@ -169,7 +160,7 @@ std::string Night::process() {
   const std::uint64_t until = files.back().number;
   std::string said;
   try {
-    said = judge(newest(std::move(files), arguments_.most_bytes));
+    said = judge(newest(files, files.size(), arguments_.most_bytes));
   } catch (const std::exception& error) {
     said = error.what();
     result_.failed = true;

@@ -88,6 +88,17 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
   return out;
 }
 
+std::vector<RecordedFile> newest(std::span<const RecordedFile> files, std::size_t most, double most_bytes) {
+  std::vector<RecordedFile> out;
+  double bytes = 0.0;
+  for (auto file = files.rbegin(); file != files.rend() && out.size() < most; ++file) {
+    bytes += static_cast<double>(file->bytes);
+    if (!out.empty() && bytes > most_bytes) break;
+    out.insert(out.begin(), *file);
+  }
+  return out;
+}
+
 std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files) {
   std::vector<RecordedFile> best, these;
   std::uint64_t most = 0, bytes = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <ctime>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct RecordedFile {
 
 // The files in the sensor's folder, by number; empty if there is no folder.
 [[nodiscard]] std::vector<RecordedFile> recorded_files(const SensorConfig& sensor);
+
+// The newest ones of so many files and bytes in total; of some at least one.
+[[nodiscard]] std::vector<RecordedFile> newest(std::span<const RecordedFile> files, std::size_t most,
+                                               double most_bytes);
 
 // The files of one power-up, that with most bytes, because each power-up has its own warm-up. All files if
 // they do not contain the time of power-up.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog status: the sensors of this computer's daemon. ifog proposals: models found at night, not adopted.
+#include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <chrono>
 #include <cstdint>
@@ -87,7 +88,7 @@ std::string losses_text(const status_t& status) {
 }
 
 void say_live(const status_t& status) {
-  say("  losses: {}\n  {}{}\n", losses_text(status), books_text(status),
+  say("  losses: {}\n  {}{}\n", losses_text(status), boost::join(books_parts(status), " "),
       books_balance(status) ? ": balanced" : ": DO NOT BALANCE");
   say("  health: {}; {} manoeuvres, {} divergences, {} samples out of the model's range\n",
       axis_health(status.nis_mean, status.whiteness), status.manoeuvres, status.divergences,

@@ -30,12 +30,6 @@ inline std::vector<std::string> books_parts(const status_t& status) {
   return out;
 }
 
-inline std::string books_text(const status_t& status) {
-  std::string out;
-  for (const std::string& part : books_parts(status)) out += (out.empty() ? "" : " ") + part;
-  return out;
-}
-
 // True if all balances of this message are exact.
 inline bool books_balance(const status_t& s) {
   const bool of_can = s.frames_read > 0 || s.frames_other > 0;

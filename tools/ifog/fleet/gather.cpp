@@ -14,6 +14,8 @@ namespace ifog {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Estimate, value, std_error)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TypePrior, share, mean, mean_std_error, spread, likeliest_spread,
                                    likelihood_ratio)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffectInGyro, own, not_measured, likelihood_ratio, found_alone,
+                                   probability, chance, found, with_prior)
 }  // namespace ifog
 
 namespace ifog::tools {
@@ -92,16 +94,10 @@ nlohmann::json spread_json(const RandomEffects& spread) {
 }
 
 nlohmann::json gyro_json(const Population& population, const EffectInGyro& each) {
-  return {{"serial", population.serials[each.gyro]},
-          {"own", each.own},
-          {"not_measured",
-           each.not_measured.empty() ? nlohmann::json(nullptr) : nlohmann::json(each.not_measured)},
-          {"likelihood_ratio", each.likelihood_ratio},
-          {"found_alone", each.found_alone},
-          {"probability", each.probability},
-          {"chance", each.chance},
-          {"found", each.found},
-          {"with_prior", each.with_prior}};
+  nlohmann::json json = each;
+  json["serial"] = population.serials[each.gyro];
+  if (each.not_measured.empty()) json["not_measured"] = nullptr;
+  return json;
 }
 
 nlohmann::json type_effect_json(const Population& population, const TypeEffect& effect) {

@@ -10,9 +10,7 @@
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
-#include "drivers/host/timeline_frame.h"
-#include "drivers/row_times/sample_clock.h"
-#include "drivers/timeline/timeline.h"
+#include "drivers/capture/times/sample_times.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/console/errors.h"
 #include "tools/ifog/console/progress.h"
@@ -44,10 +42,10 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
   ReplayTimeline timeline;
-  CandumpBuses buses;
-  std::string two;  // interfaces with frames of one id
+  // A log keeps the frames of each interface, another interface mixes them.
   const CandumpLosses lost = for_each_candump_frame(
-      file, source.input.channel, [&](const ifog_can_frame& frame, std::string_view from) {
+      file, source.input.channel, [&](const ifog_can_frame&) { return source.prefer_can; },
+      [&](const ifog_can_frame& frame, std::string_view from) {
         auto found = std::ranges::find(timeline.interfaces, from);
         if (found == timeline.interfaces.end()) found = timeline.interfaces.emplace(found, from);
         const auto number = found - timeline.interfaces.begin();
@@ -55,15 +53,12 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
           throw std::runtime_error("more than 65535 interfaces, this is no candump log");
         timeline.frames.push_back(frame);
         timeline.on.push_back(static_cast<std::uint16_t>(number));
-        if (const std::string_view other = buses.other(frame, from); two.empty() && !other.empty())
-          two = two_interfaces(source.path, other, from);
       });
   if (lost.remote + lost.error > 0)
     warn("{}: {} remote and {} error frames are not sent\n", source.path, lost.remote, lost.error);
   if (lost.cut_off) warn("{}: the last line is no whole frame and is not sent\n", source.path);
   if (file.ends_early())
     warn("{}: the gzip stream ends early (truncated file); what is there is sent\n", source.path);
-  if (source.prefer_can && !two.empty()) throw std::runtime_error(two);
   return timeline;
 }
 
@@ -85,17 +80,12 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
     throw refusal("{}: driver {} takes no bytes", source.path, source.input.driver_name());
   if (d.has_device_time == 0 && !(d.nominal_rate_hz > 0.0))
     throw refusal("{}: the frames carry no time, expected --option rate_hz=HZ", source.path);
-  Timeline steps(d.sequence_modulus, d.nominal_rate_hz);
-  double time_s = 0.0;
+  SampleTimes times(d);
+  times.allow_restarts();
   for (std::size_t i = 0; i < timeline.bytes.size(); ++i)
     driver.decode_bytes({&timeline.bytes[i], 1}, 0, [&](const ifog_sample& sample) {
-      const Timeline::Frame frame = timeline_frame(sample, d.axes);
-      if (timeline.blocks.empty()) {
-        static_cast<void>(steps.first(frame));
-      } else if (const Timeline::Step step = steps.next(frame); !step.out_of_turn) {
-        time_s += step.dt_s;
-      }  // repeated or late samples keep their place
-      timeline.blocks.push_back({nanoseconds(time_s), i + 1});
+      (void)times.next(sample);  // repeated or late samples keep their place
+      timeline.blocks.push_back({nanoseconds(times.last_s()), i + 1});
     });
   if (timeline.blocks.empty())
     throw refusal("{}: no frame of driver {} in it", source.path, source.input.driver_name());
@@ -120,10 +110,9 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
     throw refusal("{}: a capture in columns needs --driver NAME, whose frames its rows become", source.path);
   const LongCapture read(source.input.read_long_columns(file), source.path);
   const CaptureView& capture = read.view();
-  const double rate_hz = capture.size() > 1 ? sample_rate_hz(sample_clock(capture.time_s).period_s) : 0.0;
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
-  DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
-  CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
+  DriverInstance driver(plugin, with_rate(capture, *plugin, source.input.settings()));
+  CaptureEncoder encoder(capture, driver, source.axis);
   for (const std::string& notice : encoder.notices()) warn("{}: {}\n", source.path, notice);
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;

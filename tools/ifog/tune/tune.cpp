@@ -233,8 +233,7 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
 void run_tune(const TuneArguments& options) {
   const Model before = options.model.empty() ? Model{} : read_model(options.model);
   const auto wanted = [&](const std::string& column) {
-    return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate") ||
-           is_other_rate(column);
+    return !before.effects.empty() || is_rate_column(column) || is_other_rate(column);
   };
   const PreparedCaptures prepared =
       options.input.prepared({options.capture}, {.part = options.part,

@@ -175,6 +175,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
     add(driver.counters(), counts.driver);
     tell_losses();
     if (counts.samples == 0) throw refusal("driver {} finds no sample in it", driver.table().name);
+    for (const std::string& loss : losses(counts)) warn("{}: {}\n", file_.path(), loss);
     return counts;
   });
 }
@@ -185,21 +186,19 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
   builder.allow_restarts();
   std::vector<ChannelValue> before(header().channels.size());
   std::vector<double> fresh(before.size());
-  const RecordingCounts counts =
-      for_each_sample(driver, {[&](const RecordedSample& recorded) {
-                                 for (std::size_t i = 0; i < before.size(); ++i) {
-                                   const ChannelValue& now = recorded.outside[i];
-                                   fresh[i] = now.same(before[i]) ? kNone : now.value;
-                                   before[i] = now;
-                                 }
-                                 builder.add(recorded.sample, fresh);
-                                 if (first_ns == 0) first_ns = recorded.read_ns;
-                               },
-                               [&] { builder.discontinuity(); },
-                               {},
-                               [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
-  for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("{}: {}\n", file_.path(), line);
+  for_each_sample(driver, {[&](const RecordedSample& recorded) {
+                             for (std::size_t i = 0; i < before.size(); ++i) {
+                               const ChannelValue& now = recorded.outside[i];
+                               fresh[i] = now.same(before[i]) ? kNone : now.value;
+                               before[i] = now;
+                             }
+                             builder.add(recorded.sample, fresh);
+                             if (first_ns == 0) first_ns = recorded.read_ns;
+                           },
+                           [&] { builder.discontinuity(); },
+                           {},
+                           [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
+  for (const std::string& line : builder.remarks()) warn("{}: {}\n", file_.path(), line);
   // From the first file's header; later power-ups are visible in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <ifog/decode.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/times/time_stamps.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
@@ -113,11 +115,15 @@ class SensorSeconds {
   std::int64_t elapsed_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0;
 };
 
-// Suffixes of the axes' names; three axes are x, y, z, because messages do not name them.
-std::vector<std::string> axis_ends(std::size_t axes) {
-  std::vector<std::string> ends{"_x", "_y", "_z"};
-  ends.resize(std::min(ends.size(), axes));
-  return axes == 1 ? std::vector<std::string>{""} : ends;
+// Three axes are x, y, z, because messages do not name them.
+std::vector<std::string> axis_names(std::size_t axes) {
+  std::vector<std::string> names{"x", "y", "z"};
+  names.resize(std::min(names.size(), axes));
+  return axes == 1 ? std::vector<std::string>{""} : names;
+}
+
+std::string one_of(const std::set<std::string>& channels) {
+  return "expected --channel with one of " + printable(boost::join(channels, ", "), kLongestMessage);
 }
 
 using RateSink = std::function<void(const MeasuredRate&, double)>;
@@ -205,9 +211,7 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
   }
   if (with_rates.empty()) return;
   with_rates.insert(chosen.rates);
-  std::string list;
-  for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
-  throw refusal("{}: has several channels, expected --channel with one of {}", chosen.path, list);
+  throw refusal("{}: has several channels, {}", chosen.path, one_of(with_rates));
 }
 
 // Prints the date of t = 0, which the times do not contain.
@@ -254,9 +258,7 @@ std::string only_channel(const NamedLog& source, const std::string& path) {
         "{}: no channel carries bytes of a device (senlcm.raw_t, bot_core.raw_t, senlcm.raw_ascii_t), "
         "expected none of --driver and --dbc",
         path);
-  std::string list;
-  for (const std::string& each : found) list += (list.empty() ? "" : ", ") + printable(each);
-  throw refusal("{}: several channels carry bytes, expected --channel with one of {}", path, list);
+  throw refusal("{}: several channels carry bytes, {}", path, one_of(found));
 }
 
 }  // namespace
@@ -276,8 +278,8 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
         if (!rows.begun()) {
           tell_start(chosen.path, message);
           std::vector<std::string> names;
-          for (const std::string& end : axis_ends(message.raw.size()))
-            names.push_back("rate" + end + "_radps");
+          for (const std::string& axis : axis_names(message.raw.size()))
+            names.push_back(of_axis("rate", axis) + "_radps");
           names.insert(names.end(), extra.begin(), extra.end());
           rows.begin(names);
         }
@@ -303,9 +305,9 @@ void read_published(InputFile& file, const std::string& channel, RowSink& sink) 
   const auto take = [&](const rate_t& message, double) {
     if (!rows.begun()) {
       std::vector<std::string> names;
-      for (const std::string& end : axis_ends(message.raw.size()))
+      for (const std::string& axis : axis_names(message.raw.size()))
         for (const std::string what : {"raw", "compensated", "denoised", "variance"})
-          names.push_back(what + end + (what == "variance" ? "_rad2ps2" : "_radps"));
+          names.push_back(of_axis(what, axis) + (what == "variance" ? "_rad2ps2" : "_radps"));
       rows.begin(names);
     } else {
       time_s += message.dt;  // the sensor's time even if a recording was played faster

@@ -64,14 +64,19 @@ std::vector<std::string> LongTable::names() const {
   return out;
 }
 
+const LongColumn* LongTable::column(const std::string& name) const {
+  const auto found = std::ranges::find(columns, name, &LongColumn::name);
+  return found == columns.end() ? nullptr : &*found;
+}
+
 void LongTable::drop_unknown(const std::string& path) {
   const bool any = std::ranges::any_of(
       columns, [](const LongColumn& column) { return column.known && column.name.starts_with("rate"); });
   if (!any) throw refusal("{}: the device marks every value of every axis invalid", path);
   drop_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
-    return std::ranges::any_of(
-        columns, [&](const LongColumn& column) { return column.name == name && !column.known; });
+    const LongColumn* const found = column(name);
+    return found != nullptr && !found->known;
   });
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
 }
@@ -144,7 +149,7 @@ LongTable long_table(Capture capture) {
   rows.time_s = std::move(capture.time_s);
   const auto add = [&](const std::string& what, const std::string& axis, std::vector<double>& values) {
     if (values.empty()) return;
-    names.push_back(what + (axis.empty() ? "" : "_" + axis) + "_radps");
+    names.push_back(of_axis(what, axis) + "_radps");
     rows.columns.push_back(std::move(values));
   };
   for (std::size_t i = 0; i < capture.axes.size(); ++i) {

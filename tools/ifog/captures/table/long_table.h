@@ -33,6 +33,8 @@ struct LongTable : RowNotes {
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] const LongColumn* column(
+      const std::string& name) const;  // null: it has none, or it was not read
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error if none is left.
   void drop_unknown(const std::string& path);
   // Removes the values that the rule (filters/rest/cleaned_rate.h) finds in the rates.
