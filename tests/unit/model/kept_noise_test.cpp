@@ -32,19 +32,13 @@ std::string noise_with(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
+// A field that is not written is refused, one that is not read is not written again.
 TEST(KeptNoise, ReadsBackToTheBit) {
-  const KeptNoise kept = some();
-  const KeptNoise read = parse_kept_noise(kept_noise_text(kept), "f.toml");
-  EXPECT_EQ(read.sensor, kept.sensor);
-  EXPECT_EQ(read.driver, kept.driver);
-  EXPECT_EQ(read.axes, kept.axes);
-  EXPECT_EQ(read.sample_rate_hz, kept.sample_rate_hz);
-  EXPECT_EQ(read.learned, kept.learned);
-  EXPECT_EQ(read.noise.process_noise, kept.noise.process_noise);
-  EXPECT_EQ(read.noise.measurement_noise, kept.noise.measurement_noise);
-  EXPECT_EQ(read.noise.noise, kept.noise.noise);
-  EXPECT_EQ(read.noise.samples, kept.noise.samples);
-  EXPECT_EQ(read.noise.model, kept.noise.model);
+  const std::string text = kept_noise_text(some());
+  const KeptNoise read = parse_kept_noise(text, "f.toml");
+  EXPECT_EQ(kept_noise_text(read), text);
+  EXPECT_EQ(read.noise.process_noise, some().noise.process_noise);
+  EXPECT_TRUE(read.noise.is_of("3f9c21a0b7de"));
 }
 
 // As written before the model was said.
