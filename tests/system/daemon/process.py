@@ -56,7 +56,7 @@ class Listener:
                 self.rates.append(self.rate_t.decode(message))
 
     def send(self, channel, message):
-        self.socket.sendto(b"LC02" + bytes(4) + channel.encode() + b"\0" + message.encode(), (GROUP, PORT))
+        self.socket.sendto(b"LC02" + bytes(4) + channel + b"\0" + message, (GROUP, PORT))
 
 
 class Daemon:

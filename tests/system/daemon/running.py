@@ -146,7 +146,7 @@ field = "input_rate_hz"
 
     def arrived():
         daemon.send("nose", 5)
-        daemon.listener.send("HULL", hull)
+        daemon.listener.send(b"HULL", hull.encode())
         values = dict(zip(daemon.nose().channel_name, daemon.nose().channel_value))
         return values["coil_degC"] == 41.25 and values["hull_degC"] == 18.5 and values["load_us"] > 0
     daemon.until(arrived, "the channels")

@@ -79,21 +79,28 @@ std::vector<double> weights_of(Deviation kind, std::size_t m) {
 // The variance of an estimate from n samples by its definition: the covariances of all pairs of places (Greenhall and Riley,
 // "Uncertainty of stability variances based on finite differences", 35th PTTI, 2003; NIST SP 1065, section 5.4.1).
 double by_definition(Deviation kind, std::size_t n, std::size_t m, const ifog::TermVariances& v) {
-  const auto of_phases = [&](long double t) {
-    const long double a = std::abs(t), log = a > 0.0L ? std::log(a) : 0.0L;
-    return (a == 0.0L ? v[0] : 0.0L) - 0.5L * v[1] * a +
-           v[2] * a * a * log / (2.0L * std::numbers::pi_v<long double>)+v[3] * a * a * a / 12.0L;
-  };
   const std::vector<double> w = weights_of(kind, m);
   const auto length = static_cast<int>(w.size()), places = static_cast<int>(n) + 2 - length;
-  std::vector<long double> pairs(2 * w.size(), 0.0L);  // of weights so far apart, from -length on
-  for (int i = 0; i < length; ++i)
-    for (int j = 0; j < length && w[i] != 0.0; ++j) pairs[length + j - i] += w[i] * w[j];
+  std::vector<long double> of_phases;  // so many samples apart, as far as it matters to differences
+  for (int apart = 0; apart < places + length; ++apart) {
+    const long double a = apart, square = a * a;
+    of_phases.push_back(
+        (apart == 0 ? v[0] : 0.0L) - 0.5L * v[1] * a + v[3] * square * a / 12.0L +
+        (apart == 0 ? 0.0L : v[2] * square * std::log(a) / (2.0L * std::numbers::pi_v<long double>)));
+  }
+  std::vector<std::pair<int, long double>> pairs;  // of weights: how far apart, and the sum of their products
+  for (int apart = 1 - length; apart < length; ++apart) {
+    long double product = 0.0L;
+    for (int i = std::max(0, -apart); i < std::min(length, length - apart); ++i)
+      product +=
+          static_cast<long double>(w[static_cast<std::size_t>(i)]) * w[static_cast<std::size_t>(i + apart)];
+    if (product != 0.0L) pairs.emplace_back(apart, product);
+  }
   long double sum = 0.0L;
   for (int lag = 0; lag < places; ++lag) {
     long double covariance = 0.0L;
-    for (int apart = -length; apart < length; ++apart)
-      if (pairs[length + apart] != 0.0L) covariance += pairs[length + apart] * of_phases(lag + apart);
+    for (const auto& [apart, product] : pairs)
+      covariance += product * of_phases[static_cast<std::size_t>(std::abs(lag + apart))];
     sum += (lag == 0 ? 1.0L : 2.0L) * (places - lag) * 2.0L * covariance * covariance;
   }
   const double scale = (kind == Deviation::kHadamard ? 6.0 : 2.0) * static_cast<double>(m * m) * places;

@@ -11,7 +11,7 @@ namespace {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 constexpr unsigned kRuns = 60;
 #else
-constexpr unsigned kRuns = 400;
+constexpr unsigned kRuns = 250;
 #endif
 
 TEST(Books, BalanceWhateverHappensAndTheAngleIsThatOfTheIntactFrames) {

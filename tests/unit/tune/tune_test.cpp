@@ -7,15 +7,7 @@
 namespace {
 
 using ifog::Tuning;
-
-// mt19937_64 is fixed by the standard; only the normal distribution on it may differ between libraries, and
-// the tests below hold for any normal noise.
-struct Noise {
-  std::mt19937_64 engine;
-  std::normal_distribution<double> normal;
-  explicit Noise(unsigned seed) : engine(seed) {}
-  double operator()() { return normal(engine); }
-};
+using ifog::test::Noise;
 
 Tuning tuned(const std::vector<double>& rate, double period, std::vector<std::string> states = {}) {
   const std::span<const double> axes[] = {rate};
