@@ -9,8 +9,6 @@ import pathlib
 import select
 import shutil
 import signal
-import socket
-import struct
 import subprocess
 import sys
 import tempfile
@@ -23,7 +21,6 @@ import frames  # noqa: E402
 import private_network  # noqa: E402
 
 IFOG, IFOGD = BUILD / "tools/ifog/ifog", BUILD / "daemon/ifogd"
-GROUP, PORT = "239.255.76.67", 7667
 DAEMON = "[daemon]\nlock_memory = false\n"
 FILTER = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n"
 GENEROUS_S = 60  # only a check that fails waits so long
@@ -37,11 +34,7 @@ class Listener:
         from ifog.status_t import status_t
         self.rate_t, self.status_t = rate_t, status_t
         self.rates, self.last, self.heard = [], {}, collections.Counter()
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
-        self.socket.bind((GROUP, PORT))
-        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, struct.pack("4sl", socket.inet_aton(GROUP), socket.INADDR_ANY))
+        self.socket = private_network.group_socket()
 
     def listen(self, seconds):
         while select.select([self.socket], [], [], seconds)[0]:
@@ -56,7 +49,7 @@ class Listener:
                 self.rates.append(self.rate_t.decode(message))
 
     def send(self, channel, message):
-        self.socket.sendto(b"LC02" + bytes(4) + channel + b"\0" + message, (GROUP, PORT))
+        self.socket.sendto(b"LC02" + bytes(4) + channel + b"\0" + message, (private_network.GROUP, private_network.PORT))
 
 
 class Daemon:

@@ -108,53 +108,46 @@ constexpr const char* kSerial =
 
 // What is wrong is named by file, line, key and value, in one line.
 TEST(Config, NamesWhereAndWhat) {
-  struct Wrong {
-    std::string extra;  // after kGood, whose lines are 1 … 7
-    const char* place;
-  };
   const std::string frame = "[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\n";
   const std::string publish = "[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = ";
-  for (const auto& [extra, place] : std::initializer_list<Wrong>{
-           {"colour = 1\n", "8: sensor.transport.colour: unknown key; known here: "},
-           {"speed = \"fast\"\n", "8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
-           {"speed = -1\n", "8: sensor.transport.speed = -1: "},
-           {"pace = \"slow\"\n", "8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
-           {"pace = \"recorded\"\n", "8: sensor.transport.pace = \"recorded\": raw bytes carry no times"},
-           {"bytes_per_second = -1.0\n", "8: sensor.transport.bytes_per_second = -1: "},
-           {"interface = \"\"\n", "8: sensor.transport.interface = '': "},
-           {"await_writer = 1\n", "8: sensor.transport.await_writer = 1: "},
-           {"block_bytes = 65537\n", "8: sensor.transport.block_bytes = 65537: "},
-           {"[sensor.filter]\nwindow = 1\n", "9: sensor.filter.window = 1: "},
-           {"[sensor.filter]\nwindow = 5.5\n", "9: sensor.filter.window = 5.5: expected a whole number"},
-           {"[sensor.filter]\nprocess_noise = -1e-9\n", "9: sensor.filter.process_noise = -1e-09: "},
-           {"[sensor.filter]\nprocess_noise = nan\n", "9: sensor.filter.process_noise = nan: "},
-           {"[sensor.realtime]\nreader_cpus = [0, -1]\n", "9: sensor.realtime.reader_cpus = [ 0, -1 ]: "},
-           {"[[sensor.channel]]\nname = \"t_degC\"\n", "8: sensor.channel.source: missing; expected "},
-           {std::string("[[sensor]]\nname = \"NOSE\"") + kCan,
-            "9: sensor.name = 'NOSE': another sensor publishes"},
-           {std::string("[[sensor]]\nname = \"nose_status\"") + kCan, "9: sensor.name = 'nose_status': "},
-           {std::string("[[sensor]]\nname = \"nose_imu\"") + kCan, "9: sensor.name = 'nose_imu': "},
-           {std::string(kSerial) + "set_up = [\"=CONFIG,1\", \"DR\"]\n",
-            "14: sensor.transport.set_up = ['DR']: "},
-           {std::string(kSerial) + "parity = \"mark\"\n", "14: sensor.transport.parity = 'mark': "},
-           {std::string(kSerial) + "baud = 49\n", "14: sensor.transport.baud = 49: "},
-           {std::string(kSerial) + "data_bits = 9\n", "14: sensor.transport.data_bits = 9: "},
-           {std::string(kSerial) + "stop_bits = 0\n", "14: sensor.transport.stop_bits = 0: "},
-           {"[[sensor.publish]]\nchannel = \"A\"\n", "8: sensor.publish.type: missing; expected "},
-           {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
-            "9: sensor.publish.type = 'bot_core.ins': "},
-           {publish + "\"IFOG_A\"\n", "10: sensor.publish.channel = 'IFOG_A': "},
-           {publish + "\"A\"\n" + publish + "\"A\"\n",
-            "10: sensor.publish.channel = 'A': something else is published"},
-           {frame + "minimum = 5.0\nmaximum = 5.0\n", "12: sensor.channel.maximum: not above minimum; "},
-           {frame + "max_step = -1.0\n", "11: sensor.channel.max_step = -1: "},
-           {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
-            "12: sensor.channel.scale = inf: "},
-           {"[daemon]\nlog_level = \"loud\"\n", "9: daemon.log_level = 'loud': "}}) {
-    const std::string said = complaint(kGood + extra);
-    EXPECT_TRUE(said.starts_with(std::string("f.toml:") + place)) << extra << said;
-    EXPECT_FALSE(test::has(said, "\n")) << said;
-  }
+  expect_complaints(
+      kGood,  // whose lines are 1 … 7
+      {{"colour = 1\n", "8: sensor.transport.colour: unknown key; known here: "},
+       {"speed = \"fast\"\n", "8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
+       {"speed = -1\n", "8: sensor.transport.speed = -1: "},
+       {"pace = \"slow\"\n", "8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
+       {"pace = \"recorded\"\n", "8: sensor.transport.pace = \"recorded\": raw bytes carry no times"},
+       {"bytes_per_second = -1.0\n", "8: sensor.transport.bytes_per_second = -1: "},
+       {"interface = \"\"\n", "8: sensor.transport.interface = '': "},
+       {"await_writer = 1\n", "8: sensor.transport.await_writer = 1: "},
+       {"block_bytes = 65537\n", "8: sensor.transport.block_bytes = 65537: "},
+       {"[sensor.filter]\nwindow = 1\n", "9: sensor.filter.window = 1: "},
+       {"[sensor.filter]\nwindow = 5.5\n", "9: sensor.filter.window = 5.5: expected a whole number"},
+       {"[sensor.filter]\nprocess_noise = -1e-9\n", "9: sensor.filter.process_noise = -1e-09: "},
+       {"[sensor.filter]\nprocess_noise = nan\n", "9: sensor.filter.process_noise = nan: "},
+       {"[sensor.realtime]\nreader_cpus = [0, -1]\n", "9: sensor.realtime.reader_cpus = [ 0, -1 ]: "},
+       {"[[sensor.channel]]\nname = \"t_degC\"\n", "8: sensor.channel.source: missing; expected "},
+       {std::string("[[sensor]]\nname = \"NOSE\"") + kCan,
+        "9: sensor.name = 'NOSE': another sensor publishes"},
+       {std::string("[[sensor]]\nname = \"nose_status\"") + kCan, "9: sensor.name = 'nose_status': "},
+       {std::string("[[sensor]]\nname = \"nose_imu\"") + kCan, "9: sensor.name = 'nose_imu': "},
+       {std::string(kSerial) + "set_up = [\"=CONFIG,1\", \"DR\"]\n",
+        "14: sensor.transport.set_up = ['DR']: "},
+       {std::string(kSerial) + "parity = \"mark\"\n", "14: sensor.transport.parity = 'mark': "},
+       {std::string(kSerial) + "baud = 49\n", "14: sensor.transport.baud = 49: "},
+       {std::string(kSerial) + "data_bits = 9\n", "14: sensor.transport.data_bits = 9: "},
+       {std::string(kSerial) + "stop_bits = 0\n", "14: sensor.transport.stop_bits = 0: "},
+       {"[[sensor.publish]]\nchannel = \"A\"\n", "8: sensor.publish.type: missing; expected "},
+       {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
+        "9: sensor.publish.type = 'bot_core.ins': "},
+       {publish + "\"IFOG_A\"\n", "10: sensor.publish.channel = 'IFOG_A': "},
+       {publish + "\"A\"\n" + publish + "\"A\"\n",
+        "10: sensor.publish.channel = 'A': something else is published"},
+       {frame + "minimum = 5.0\nmaximum = 5.0\n", "12: sensor.channel.maximum: not above minimum; "},
+       {frame + "max_step = -1.0\n", "11: sensor.channel.max_step = -1: "},
+       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
+        "12: sensor.channel.scale = inf: "},
+       {"[daemon]\nlog_level = \"loud\"\n", "9: daemon.log_level = 'loud': "}});
 }
 
 std::string network(const std::string& transport) {
@@ -179,26 +172,24 @@ TEST(Config, ReadsANetworkSensor) {
 
 TEST(Config, NamesWhatIsWrongWithANetworkSensor) {
   const std::string udp = "type = \"udp\"\nport = 5000\n", tcp = "type = \"tcp\"\nport = 4001\n";
-  for (const auto& [transport, place] : std::initializer_list<std::pair<std::string, std::string>>{
-           {"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
-           {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
-           {udp + "bind = \"here\"\n",
-            "7: sensor.transport.bind = 'here': expected a numeric address of this "},
-           {udp + "bind = \"239.1.2.3\"\n", "7: sensor.transport.bind = '239.1.2.3': "},
-           {udp + "interface = \"eth0\"\n", "7: sensor.transport.interface = 'eth0': "},
-           {udp + "group = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
-           {udp + "group = \"10.1.2.3\"\ninterface = \"eth0\"\n",
-            "7: sensor.transport.group = '10.1.2.3': expected a multicast address"},
-           {udp + "group = \"239.1.2.3\"\ninterface = \"eth0\"\nbind = \"10.0.0.1\"\n",
-            "9: sensor.transport.bind = '10.0.0.1': "},
-           {udp + "host = \"gyro\"\n", "7: sensor.transport.host = 'gyro': "},
-           {udp + "bind = \"::1\"\nhost = \"10.0.0.1\"\n",
-            "8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, as "
-            "::1"},
-           {tcp, "4: sensor.transport.host: missing; "},
-           {tcp + "host = \"10.0.0.1\"\nbaud = 9600\n", "8: sensor.transport.baud: unknown key; "}})
-    EXPECT_TRUE(complaint(network(transport)).starts_with("f.toml:" + place))
-        << complaint(network(transport));
+  expect_complaints(
+      network(""),
+      {{"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
+       {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
+       {udp + "bind = \"here\"\n", "7: sensor.transport.bind = 'here': expected a numeric address of this "},
+       {udp + "bind = \"239.1.2.3\"\n", "7: sensor.transport.bind = '239.1.2.3': "},
+       {udp + "interface = \"eth0\"\n", "7: sensor.transport.interface = 'eth0': "},
+       {udp + "group = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
+       {udp + "group = \"10.1.2.3\"\ninterface = \"eth0\"\n",
+        "7: sensor.transport.group = '10.1.2.3': expected a multicast address"},
+       {udp + "group = \"239.1.2.3\"\ninterface = \"eth0\"\nbind = \"10.0.0.1\"\n",
+        "9: sensor.transport.bind = '10.0.0.1': "},
+       {udp + "host = \"gyro\"\n", "7: sensor.transport.host = 'gyro': "},
+       {udp + "bind = \"::1\"\nhost = \"10.0.0.1\"\n",
+        "8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, as "
+        "::1"},
+       {tcp, "4: sensor.transport.host: missing; "},
+       {tcp + "host = \"10.0.0.1\"\nbaud = 9600\n", "8: sensor.transport.baud: unknown key; "}});
   for (const std::string host :
        {"gyro.local", "239.1.2.3", "fe80::1", "ff02::1", "192.168.1", "192.168.1.256", "1.2.3.4:5", "[::1]",
         "fe80::1%", "fe80::1%an-interface-too-long", "::1 "})
