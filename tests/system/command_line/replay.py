@@ -13,7 +13,9 @@ import sys
 import threading
 import time
 
-from run import IFOG, main_of, ran
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from each_check import running  # noqa: E402
+from run import IFOG, main_of, ran  # noqa: E402
 
 KVH = ["--driver", "kvh1750", "--option", "format=b"]
 
@@ -30,6 +32,9 @@ class Checks:
         assert done.returncode == code, f"replay {arguments}: exit {done.returncode}, expected {code}: {said}"
         for part in says:
             assert part in said, f"replay {arguments}: no '{part}' in '{said}'"
+
+    def started(self, *words):
+        return running(IFOG, "replay", self.log, *words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def written(self):
         return json.loads(self.report.read_text())
@@ -80,8 +85,7 @@ class Checks:
     def check_an_interrupt_ends_it_with_the_report(self):
         """Of a replay without end that is the end; of another it is less than requested, a failure that says how much was sent."""
         for loops in (0, 20_000):
-            words = [IFOG, "replay", self.log, "--to", f"file:{self.again}", "--json", self.report, "--loop", str(loops)]
-            with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as player:
+            with self.started("--to", f"file:{self.again}", "--json", self.report, "--loop", str(loops)) as player:
                 while self.nameless(player) < 1000:
                     assert player.poll() is None, player.stdout.read()
                     time.sleep(0.005)
@@ -105,11 +109,9 @@ class Checks:
         return max(sizes)
 
     def check_an_interrupted_wait_for_a_reader_is_said(self):
-        with subprocess.Popen([IFOG, "replay", self.log, "--to", f"fifo:{self.folder / 'unread'}"], stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True) as player:
-            said = ""
-            while "waiting for a reader" not in said:
-                said += player.stdout.readline()
+        with self.started("--to", f"fifo:{self.folder / 'unread'}") as player:
+            said = player.stdout.readline()
+            assert "waiting for a reader" in said, said
             while player.poll() is None:  # the first signal may have come before the wait
                 player.send_signal(signal.SIGINT)
                 time.sleep(0.05)

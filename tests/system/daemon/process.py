@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The real ifogd in a folder and a network of its own: its configuration, what it says and publishes, sensors that are FIFOs.
 
-A script's functions check_SOMETHING(daemon) each have such a folder; see main_of(). Its first argument is the build folder.
+A script's functions check_SOMETHING(daemon) each have such a folder; see main_of(). Its arguments are the build folder and, to run
+only some of them, parts of their names.
 """
 import collections
 import os
@@ -18,6 +19,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 BUILD, SOURCE = pathlib.Path(sys.argv[1]).resolve(), HERE.parents[2]
 sys.path[:0] = [str(HERE.parent), str(HERE.parent / "box"), str(BUILD / "msgs/python")]
 import frames  # noqa: E402
+from each_check import running  # noqa: E402, F401
 import private_network  # noqa: E402
 
 IFOG, IFOGD = BUILD / "tools/ifog/ifog", BUILD / "daemon/ifogd"
@@ -168,11 +170,11 @@ class Daemon:
 
 
 def main_of(script):
-    """Runs every check of the script in a network of its own; one line each, `ok` or `FAILED` with the reason."""
+    """Runs the checks of the script in a network of its own; one line each, `ok` or `FAILED` with the reason."""
     private_network.enter()
     failed = 0
     for name, check in list(script.items()):
-        if not name.startswith("check_"):
+        if not name.startswith("check_") or not any(part in name for part in sys.argv[2:] or [""]):
             continue
         with Daemon() as daemon:
             try:

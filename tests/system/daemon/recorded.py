@@ -3,7 +3,7 @@
 """The daemon with its flight recorder: what the command line makes of the recording is what the daemon published, and what the
 device sent.
 
-usage: recorded.py BUILD
+usage: recorded.py BUILD [PART OF A CHECK'S NAME...]
 """
 import collections
 import csv
@@ -255,7 +255,7 @@ def check_what_the_ring_merged_is_said_by_denoise(daemon):
 def check_lcm_is_recorded_on_another_computer_with_its_channels(daemon):
     configure(daemon, rate_hz=100)
     daemon.listen(0)
-    with subprocess.Popen([IFOG, "record", "--output", daemon.path("heard"), "--sensor", "nose"], stdout=subprocess.DEVNULL) as recorder:
+    with process.running(IFOG, "record", "--output", daemon.path("heard"), "--sensor", "nose", stdout=subprocess.DEVNULL) as recorder:
         daemon.start()
         daemon.until(daemon.path("heard").exists, "the recorder")
         for _ in range(100):  # it listens soon after its folder exists

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The daemon while it runs: what reloading, silence, a lost log and a second daemon do to it.
 
-usage: running.py BUILD
+usage: running.py BUILD [PART OF A CHECK'S NAME...]
 """
 import fcntl
 import os
