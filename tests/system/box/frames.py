@@ -41,6 +41,7 @@ def kvh1750_of(sample, rates, temperature_degC=25):
 
 
 def kvh1750(sample, hertz):
+    """With the rate() of that sample."""
     return kvh1750_of(sample, (rate(sample, hertz), 0.001, -0.001))
 
 

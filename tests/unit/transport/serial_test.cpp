@@ -51,7 +51,7 @@ TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
   EXPECT_EQ(gyro.receive(opening.size()), opening);
   gyro.send("0");
   EXPECT_EQ(read_some(*transport, 1), "0");
-  for (int pull = 1; pull <= 20; ++pull) {
+  for (int pull = 1; pull <= 10; ++pull) {
     gyro.pull();
     while (transport->state() == TransportState::open) transport->read(kForever);
     EXPECT_EQ(transport->state(), TransportState::gone);
@@ -68,7 +68,7 @@ TEST(SerialTransport, ComesBackAfterEachPullAndSendsItsOpeningAgain) {
     EXPECT_TRUE(back.restarted);
     EXPECT_GT(back.arrival_ns, 0) << "nothing piles up in a device that is away";
   }
-  EXPECT_EQ(transport->counters().reopened, 20U);
+  EXPECT_EQ(transport->counters().reopened, 10U);
 }
 
 // What the UART had counted before the device was opened is none of its reader's losses; what it counts until
