@@ -85,7 +85,7 @@ class Daemon:
         self.write(name, text)
 
     def said(self, name="said"):
-        return self.read(name) if self.path(name).exists() else ""
+        return self.read(name) if self.path(name).is_file() else ""  # not a FIFO
 
     def has_said(self, text, times=1):
         assert self.said().count(text) == times, f"{self.said().count(text)} times, expected {times}: '{text}' in\n{self.said()}"
