@@ -230,10 +230,12 @@ TEST(Config, TheComputersRunHasTheNameThatTheKernelGivesIt) {
   unsetenv("IFOGD_BOOT_ID");
 }
 
-TEST(Config, NothingToDoAndNoTomlAreErrors) {
+TEST(Config, NothingToDoNoTomlAndNoFileAreErrors) {
   EXPECT_EQ(complaint("[daemon]\n"), "f.toml: no [[sensor]]: expected at least one");
   EXPECT_TRUE(complaint("[daemon]\nlock_memory = \n").starts_with("f.toml:2: "));
   EXPECT_TRUE(complaint("[[sensor]]\nname = nose\n").starts_with("f.toml:2: a text needs quotes; "));
+  const std::string no_file = test::refusal([] { read_config("/nonexistent/ifogd.toml"); });
+  EXPECT_TRUE(test::has(no_file, "/nonexistent/ifogd.toml") && !test::has(no_file, "\n")) << no_file;
 }
 
 // What the file holds may have line ends of its own.
@@ -245,12 +247,6 @@ TEST(Config, AComplaintIsOneLineWhateverTheFileHolds) {
     EXPECT_EQ(all.rfind("f.toml:1", 0), 0U) << all;
     EXPECT_FALSE(test::has(all, "\n")) << all;
   }
-}
-
-TEST(Config, AMissingFileIsOneLine) {
-  const std::string line = test::refusal([] { read_config("/nonexistent/ifogd.toml"); });
-  EXPECT_TRUE(test::has(line, "/nonexistent/ifogd.toml"));
-  EXPECT_FALSE(test::has(line, "\n"));
 }
 
 // As the reference has them; without, everything that a sensor can measure passes.

@@ -155,10 +155,10 @@ TEST(PipelineStatus, TheLastWordTellsOfTheLastSample) {
   EXPECT_EQ(snapshot.latency.count(), 0U);
 }
 
-// Of what was published, and the same at the other end of the message.
+// Of what was published, by axis, and the same at the other end of the message.
 TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
   constexpr int kCount = 4000;
-  Rig rig(frames(kCount), kFrame, true);
+  Rig rig(kvh_frames(0, kCount, [](int n, int axis) { return (1 + axis) * rate_of(n); }), kFrame, true);
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
   rig.await_messages(kCount);
@@ -167,13 +167,14 @@ TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
   const std::vector<std::uint8_t> bytes = encoded(rig.status(snapshot));
   status_t status{};
   ASSERT_GT(status.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
-  StreamingAllan published;
-  for (const rate_t& message : rig.publisher->messages()) published.add(message.compensated[1]);
-  ASSERT_EQ(status.octaves, published.octaves());
   ASSERT_GT(status.octaves, 8);
-  for (int octave = 0; octave < status.octaves; ++octave)
-    EXPECT_EQ(status.allan_rate_radps[1][static_cast<std::size_t>(octave)], published.deviation(octave))
-        << octave;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    StreamingAllan published;
+    for (const rate_t& message : rig.publisher->messages()) published.add(message.compensated[axis]);
+    ASSERT_EQ(status.octaves, published.octaves());
+    for (int k = 0; k < status.octaves; ++k)
+      EXPECT_EQ(status.allan_rate_radps[axis][static_cast<std::size_t>(k)], published.deviation(k)) << k;
+  }
   EXPECT_NEAR(status.allan_tau0_s, 1e-3, 1e-15);
 }
 

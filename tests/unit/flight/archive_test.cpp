@@ -175,6 +175,24 @@ TEST(FlightArchive, WhatLcmLostIsNoFaultOfTheDisk) {
                                      "the disk was slow or full"});
 }
 
+TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {
+  Bench bench({});
+  bench.disk.cuts_back = false;
+  for (std::uint64_t n = 0; n < 100; ++n) {
+    bench.now_ns += kSecond;
+    if (n == 50) bench.disk.room = bench.disk.used() + 40;
+    if (n == 80) bench.disk.room = UINT64_MAX;
+    bench.add(n);
+    bench.turn();
+  }
+  bench.archive.close(bench.now_ns, kWall);
+  const ReadBack read = read_back(all_of(bench.disk));
+  EXPECT_EQ(numbers(read), counting(0, 100));
+  EXPECT_EQ(read.counts.torn_bytes, 40U);
+  EXPECT_EQ(read.counts.open_files, 1U);
+  EXPECT_EQ(bench.disk.files.size(), 2U);
+}
+
 // The wall clock of a computer without a battery: 1970 at the start, right later. It removes nothing.
 TEST(FlightArchive, AClockThatIsSetRemovesNoFile) {
   MemoryDisk disk;

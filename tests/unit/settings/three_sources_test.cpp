@@ -4,6 +4,7 @@
 #include "daemon/config/config.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
+#include "filters/model_file/toml_text.h"
 #include "filters/settings/filter_table.h"
 #include "tests/unit/test.h"
 #include "tools/ifog/console/command_line.h"
@@ -81,12 +82,6 @@ void expect_same(const FilterSetting& setting, const Asked& asked) {
   EXPECT_TRUE(given == asked.value) << "command line: " << what << ": " << in_words(given);
 }
 
-std::string digits(double value) {
-  std::array<char, 40> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 Asked written(const FilterSetting& setting, const std::string& text, std::optional<SettingValue> value) {
   return {text, {std::string(setting.option) + "=" + text}, std::move(value)};
 }
@@ -135,7 +130,8 @@ std::vector<Asked> numbers(const FilterSetting& setting) {
   const double infinity = std::numeric_limits<double>::infinity();
   std::vector<Asked> all;
   const auto ask = [&](double value, bool good) {
-    all.push_back(written(setting, digits(value), good ? std::optional<SettingValue>(value) : std::nullopt));
+    all.push_back(
+        written(setting, toml_number(value), good ? std::optional<SettingValue>(value) : std::nullopt));
   };
   ask(range.least, true);
   ask(range.least - 1.0, false);
