@@ -1,5 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the methods check_SOMETHING of an object; prints one line each, `ok` or `FAILED` with the reason."""
+"""Runs the methods check_SOMETHING of an object; prints one line each, `ok` or `FAILED` with the reason. Runs programs meanwhile."""
+import contextlib
+import subprocess
+
+
+@contextlib.contextmanager
+def running(*words, **more):
+    """A program that is killed when it is left."""
+    with subprocess.Popen(words, text=True, **more) as program:
+        try:
+            yield program
+        finally:
+            program.kill()
 
 
 def failures_of(checks):

@@ -34,11 +34,15 @@ def rate(sample, hertz):
     return 0.1 * math.sin(math.pi * sample / hertz) + noise
 
 
-def kvh1750(sample, hertz):
+def kvh1750_of(sample, rates, temperature_degC=25):
     """Format A of the KVH 1750 IMU, 36 bytes; all sensors valid."""
-    values = struct.pack(">6f", rate(sample, hertz), 0.001, -0.001, 0.0, 0.0, 1.0)
-    body = b"\xfe\x81\xff\x55" + values + struct.pack(">BBh", 0x77, sample % 128, 25)
+    body = b"\xfe\x81\xff\x55" + struct.pack(">6fBBh", *rates, 0.0, 0.0, 1.0, 0x77, sample % 128, temperature_degC)
     return body + struct.pack(">I", crc32_mpeg2(body))
+
+
+def kvh1750(sample, hertz):
+    """With the rate() of that sample."""
+    return kvh1750_of(sample, (rate(sample, hertz), 0.001, -0.001))
 
 
 def angle(begin, count, hertz):

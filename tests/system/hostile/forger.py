@@ -18,17 +18,7 @@ import threading
 import time
 
 from place import NOBODY, PYTHON, main_of
-
-GROUP, PORT = "239.255.76.67", 7667
-
-
-def group_socket():
-    out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    out.bind((GROUP, PORT))
-    out.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, struct.pack("4sl", socket.inet_aton(GROUP), socket.INADDR_ANY))
-    out.settimeout(20)
-    return out
+from private_network import GROUP, PORT, group_socket
 
 
 class Forger:
@@ -56,6 +46,7 @@ class Forger:
 def status_of(model):
     """A packet in which a sensor named nose runs with the model of this name."""
     with group_socket() as group:
+        group.settimeout(20)
         for _ in range(2000):
             packet = group.recv(65536)
             if packet[8:].startswith(b"IFOG_NOSE_STATUS\0") and model.encode() in packet:

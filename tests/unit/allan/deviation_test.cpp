@@ -128,11 +128,10 @@ const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 TEST(GappedDeviation, IsThePublishedOneWithoutAGap) {
   const std::vector<std::size_t> m = {1, 10, 100, 400};
-  const std::vector<double> found = gapped_deviation(nist_set(), m);
-  EXPECT_NEAR(found[0], 2.922319e-01, 5e-8);
-  EXPECT_NEAR(found[1], 9.159953e-02, 5e-8 * 0.3);
-  EXPECT_NEAR(found[2], 3.241343e-02, 5e-8 * 0.1);
+  std::vector<double> found = gapped_deviation(nist_set(), m);
   EXPECT_TRUE(std::isnan(found[3]));  // no three averages of 400
+  found.pop_back();
+  expect_digits(found, {2.922319e-01, 9.159953e-02, 3.241343e-02});
 }
 
 // A sample that is missing at the end says nothing: at one sample the published value, at ten within what one
@@ -262,7 +261,7 @@ TEST(Theo1, ReachesThreeQuartersOfTheRecord) {
 
 // At the longest τ an Allan variance has one difference; Thêo1 says more, and its interval holds.
 TEST(Theo1, IntervalsHoldTheAllanVarianceOfAMixture) {
-  constexpr int kRecords = 200;
+  constexpr int kRecords = 100;
   const TermVariances terms{0.0, 1.0, 0.0, 1e-4};
   std::vector<int> inside;
   for (int record = 0; record < kRecords; ++record) {
@@ -276,7 +275,7 @@ TEST(Theo1, IntervalsHoldTheAllanVarianceOfAMixture) {
     }
   }
   // Three standard errors of the count.
-  for (const int n : inside) EXPECT_NEAR(n / double{kRecords}, 0.683, 0.10);
+  for (const int n : inside) EXPECT_NEAR(n / double{kRecords}, 0.683, 0.14);
 }
 
 }  // namespace

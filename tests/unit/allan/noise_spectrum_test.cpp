@@ -63,106 +63,64 @@ TEST(PowerLaw, MeansAreTheStandards) {
   }
 }
 
-// The algorithm of Greenhall and Riley ("Uncertainty of stability variances based on finite differences",
-// 35th PTTI, 2003; NIST SP 1065, section 5.4.1) for one power law of the phase, in its own notation, every
-// lag summed: α 2, 0, −1, −2 for Q, N, B, K.
-class GreenhallRiley {
- public:
-  GreenhallRiley(int alpha, Deviation kind, double m)
-      : alpha_(alpha),
-        d_(kind == Deviation::kHadamard ? 3 : 2),
-        sampled_(kind != Deviation::kModified),
-        m_(m),
-        F_(kind == Deviation::kModified ? 1 : m) {}
+// Weights of the phases whose sum is one difference: third differences for Hadamard's, means of m for the modified one.
+std::vector<double> weights_of(Deviation kind, std::size_t m) {
+  const std::vector<double> difference = kind == Deviation::kHadamard
+                                             ? std::vector<double>{-1.0, 3.0, -3.0, 1.0}
+                                             : std::vector<double>{1.0, -2.0, 1.0};
+  const std::size_t mean_of = kind == Deviation::kModified ? m : 1;
+  std::vector<double> out((difference.size() - 1) * m + mean_of, 0.0);
+  for (std::size_t k = 0; k < mean_of; ++k)
+    for (std::size_t i = 0; i < difference.size(); ++i)
+      out[i * m + k] += difference[i] / static_cast<double>(mean_of);
+  return out;
+}
 
-  [[nodiscard]] double degrees(double phases) const {
-    const double S = m_, L = m_ / F_ + m_ * d_;
-    const double M = 1 + std::floor(S * (phases - L) / m_), J = std::min(M, (d_ + 1) * S);
-    double sum = sz(0) * sz(0) + (1 - J / M) * sz(J / S) * sz(J / S);
-    for (double j = 1; j < J; ++j) sum += 2 * (1 - j / M) * sz(j / S) * sz(j / S);
-    return sz(0) * sz(0) * M / sum;
+// The variance of an estimate from n samples by its definition: the covariances of all pairs of places (Greenhall and Riley,
+// "Uncertainty of stability variances based on finite differences", 35th PTTI, 2003; NIST SP 1065, section 5.4.1).
+double by_definition(Deviation kind, std::size_t n, std::size_t m, const ifog::TermVariances& v) {
+  const std::vector<double> w = weights_of(kind, m);
+  const auto length = static_cast<int>(w.size()), places = static_cast<int>(n) + 2 - length;
+  std::vector<long double> of_phases;  // so many samples apart, as far as it matters to differences
+  for (int apart = 0; apart < places + length; ++apart) {
+    const long double a = apart, square = a * a;
+    of_phases.push_back(
+        (apart == 0 ? v[0] : 0.0L) - 0.5L * v[1] * a + v[3] * square * a / 12.0L +
+        (apart == 0 ? 0.0L : v[2] * square * std::log(a) / (2.0L * std::numbers::pi_v<long double>)));
   }
+  std::vector<std::pair<int, long double>> pairs;  // of weights: how far apart, and the sum of their products
+  for (int apart = 1 - length; apart < length; ++apart) {
+    long double product = 0.0L;
+    for (int i = std::max(0, -apart); i < std::min(length, length - apart); ++i)
+      product +=
+          static_cast<long double>(w[static_cast<std::size_t>(i)]) * w[static_cast<std::size_t>(i + apart)];
+    if (product != 0.0L) pairs.emplace_back(apart, product);
+  }
+  long double sum = 0.0L;
+  for (int lag = 0; lag < places; ++lag) {
+    long double covariance = 0.0L;
+    for (const auto& [apart, product] : pairs)
+      covariance += product * of_phases[static_cast<std::size_t>(std::abs(lag + apart))];
+    sum += (lag == 0 ? 1.0L : 2.0L) * (places - lag) * 2.0L * covariance * covariance;
+  }
+  const double scale = (kind == Deviation::kHadamard ? 6.0 : 2.0) * static_cast<double>(m * m) * places;
+  return static_cast<double>(sum) / (scale * scale);
+}
 
- private:
-  [[nodiscard]] static long double sw(long double t, int alpha) {
-    const long double a = std::abs(t);
-    switch (alpha) {
-      case 2:
-        return -a;
-      case 1:
-        return a > 0 ? a * a * std::log(a) : 0;
-      case 0:
-        return a * a * a;
-      case -1:
-        return a > 0 ? -a * a * a * a * std::log(a) : 0;
-      default:
-        return -a * a * a * a * a;
-    }
-  }
-  // F: samples of phase averaged, in units of 1/m; rate noise is sampled as it is, F infinite.
-  [[nodiscard]] long double sx(long double t) const {
-    if (sampled_ && alpha_ < 2) return sw(t, alpha_ + 2);
-    return F_ * F_ * (2 * sw(t, alpha_) - sw(t - 1.0L / F_, alpha_) - sw(t + 1.0L / F_, alpha_));
-  }
-  [[nodiscard]] double sz(long double t) const {
-    const long double near = sx(t - 1) + sx(t + 1), far = sx(t - 2) + sx(t + 2);
-    if (d_ == 2) return static_cast<double>(6 * sx(t) - 4 * near + far);
-    return static_cast<double>(20 * sx(t) - 15 * near + 6 * far - sx(t - 3) - sx(t + 3));
-  }
-  int alpha_, d_;
-  bool sampled_;
-  double m_, F_;
-};
-
-TEST(PowerLaw, DegreesOfFreedomAreGreenhallsAndRileys) {
-  const std::array<int, ifog::kTerms> alpha{2, 0, -1, -2};
+TEST(PowerLaw, TheVarianceOfAnEstimateIsTheSumOverAllPairsOfPlaces) {
+  const std::vector<std::size_t> samples{5000};
   for (const Deviation kind : {Deviation::kAllan, Deviation::kModified, Deviation::kHadamard})
-    for (std::size_t t = 0; t < ifog::kTerms; ++t)
-      for (const std::size_t m : {1U, 2U, 7U, 40U, 300U, 1250U}) {
-        const std::vector<std::size_t> samples{5000};
-        ifog::TermVariances v{};
-        v[t] = 2.5;
-        const double found = ifog::EstimateVariance(kind, m, samples).degrees(v);
-        const double theirs = GreenhallRiley(alpha[t], kind, static_cast<double>(m)).degrees(5001);
-        // Theirs averages the phase over time where the modified deviation sums samples: at long m alike. And
-        // it stops at the difference's length; flicker goes a little further.
-        if (kind == Deviation::kModified && m < 40) continue;
-        EXPECT_NEAR(found / theirs, 1.0, kind == Deviation::kModified || t == ifog::kB ? 0.01 : 2e-3)
-            << static_cast<int>(kind) << " term " << t << " m " << m << " found " << found;
+    for (const std::size_t m : {1U, 2U, 7U, 40U, 300U, 1250U})
+      for (const TermVariances& v :
+           {TermVariances{2.5, 0, 0, 0}, TermVariances{0, 2.5, 0, 0}, TermVariances{0, 0, 2.5, 0},
+            TermVariances{0, 0, 0, 2.5}, TermVariances{2, 0.5, 0.2, 1e-3}}) {
+        const ifog::EstimateVariance found(kind, m, samples);
+        const double expected = by_definition(kind, 5000, m, v), mean = ifog::expected_variance(kind, v, m);
+        EXPECT_NEAR(found.at(v) / expected, 1.0, 2e-3)
+            << static_cast<int>(kind) << " m " << m << " N " << v[1];
+        EXPECT_NEAR(found.degrees(v) / (2.0 * mean * mean / expected), 1.0, 2e-3)
+            << static_cast<int>(kind) << " m " << m;
       }
-}
-
-// Second method: all pairs of places of a short record, one by one.
-double by_brute_force(std::size_t n, std::size_t m1, std::size_t m2, const ifog::TermVariances& v) {
-  const double w[3] = {1.0, -2.0, 1.0};
-  const auto covariance = [&](double t) {
-    const double a = std::abs(t);
-    return (a == 0.0 ? v[0] : 0.0) - 0.5 * v[1] * a +
-           (a > 0 ? v[2] * a * a * std::log(a) / (2 * std::numbers::pi) : 0) + v[3] * a * a * a / 12.0;
-  };
-  const std::size_t p1 = n + 1 - 2 * m1, p2 = n + 1 - 2 * m2;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < p1; ++i)
-    for (std::size_t j = 0; j < p2; ++j) {
-      double gamma = 0.0;
-      for (std::size_t a = 0; a < 3; ++a)
-        for (std::size_t b = 0; b < 3; ++b)
-          gamma +=
-              w[a] * w[b] * covariance(static_cast<double>(i + a * m1) - static_cast<double>(j + b * m2));
-      sum += 2.0 * gamma * gamma;
-    }
-  const auto sq = [](std::size_t m) { return static_cast<double>(m) * static_cast<double>(m); };
-  return sum / (4.0 * sq(m1) * sq(m2) * static_cast<double>(p1) * static_cast<double>(p2));
-}
-
-TEST(PowerLaw, TheVarianceIsTheSumOverAllPairsOfPlacesOfAMixture) {
-  const std::vector<std::size_t> samples{600};
-  for (const std::size_t m : {1U, 5U, 64U, 200U})
-    for (const ifog::TermVariances& v : {ifog::TermVariances{1, 0, 0, 0}, ifog::TermVariances{0, 0, 1, 0},
-                                         ifog::TermVariances{2, 0.5, 0.2, 1e-3}}) {
-      const double found = ifog::EstimateVariance(Deviation::kAllan, m, samples).at(v);
-      EXPECT_NEAR(found / by_brute_force(600, m, m, v), 1.0, 2e-4) << m << " v0 " << v[0];
-    }
 }
 
 // IEEE Std 952, annex C: exponentially correlated noise of drive q and time T.

@@ -111,7 +111,7 @@ TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
   unknown.facts.axes = 3;
   unknown.axes = {"x", "y", "z"};
   constexpr double kNoise = 1e-4, kRatio = 1e-6, kColour = 0.5;
-  for (const unsigned seed : {1U, 2U, 3U}) {
+  for (const unsigned seed : {1U, 2U}) {
     if (test::kSanitized && seed > 1) continue;
     SignalChain chain(std::make_unique<ChainParts>(unknown));
     test::Noise normal(seed);
@@ -171,7 +171,7 @@ double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
 // is lost is the mean of nine seeds.
 TEST(SignalChain, NewPartsInATurnKeepTheDenoisedAngle) {
   for (const double q : {1e-10, 0.0})  // noise given, and learned again from the first 0.3 s
-    for (const int at : {3'000, 3'002, 3'010, 3'100, 3'400, 3'900}) {
+    for (const int at : {3'000, 3'010, 3'400}) {
       if (test::kSanitized && at > 3'010) continue;
       ChainSettings each = settings(q);
       each.start_up_s = 0.3;

@@ -292,8 +292,8 @@ TEST(UnlikeAxesOfAChain, HaveTheirOwnVariance) {
   for (const Row& row :
        {Row{"a model, settled", true, kWalkAsNoise, 2000, 20'000, 8, 0.6, 1.4},
         Row{"a model, first samples", true, kWalkAsNoise, 5, 50, 60, 0.4, 1.6},
-        Row{"a model, walks alike", true, kWalkAlike, 15'000, 60'000, 6, 0.3, 1.6},
-        Row{"a model, walks against the noise", true, kWalkAgainst, 15'000, 60'000, 6, 0.3, 1.6},
+        Row{"a model, walks alike", true, kWalkAlike, 15'000, 60'000, 4, 0.3, 1.6},
+        Row{"a model, walks against the noise", true, kWalkAgainst, 15'000, 60'000, 4, 0.3, 1.6},
         Row{"no model", false, kWalkAsNoise, 12'000, 30'000, 8, 0.6, 1.4}}) {
     SCOPED_TRACE(row.name);
     const Axes squares = normalised(unlike(row.known, row.walk), row.walk, row.from, row.to, row.seeds);

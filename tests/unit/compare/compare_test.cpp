@@ -12,8 +12,24 @@ std::vector<double> noise(unsigned seed, std::size_t n) {
   return out;
 }
 
+constexpr double kPeriod = 0.01;
+
+std::vector<double> times(std::size_t n) {
+  std::vector<double> out(n);
+  for (std::size_t k = 0; k < n; ++k) out[k] = static_cast<double>(k) * kPeriod;
+  return out;
+}
+
+ifog::ComparisonInput input_of(const std::vector<double>& rate, const std::vector<double>& time) {
+  ifog::ComparisonInput out;
+  out.time_s = time;
+  out.rate = {rate};
+  out.period_s = kPeriod;
+  return out;
+}
+
 TEST(CompareFigures, LagOfADelayedSineIsTheDelay) {
-  constexpr double kPeriod = 0.01, kDelay = 0.0537;
+  constexpr double kDelay = 0.0537;
   std::vector<double> reference, output;
   for (int k = 0; k < 6000; ++k) {
     reference.push_back(std::sin(2 * std::numbers::pi * 0.5 * k * kPeriod));
@@ -80,25 +96,18 @@ TEST(CompareFigures, TheMedianIsUnknownWhenMostDidNotArrive) {
 // A conventional filter in its steady state answers a step as 1 − (1 − K)^k, K from the algebraic Riccati
 // equation.
 TEST(Compare, TheConventionalFilterTakesAsLongAsItsClosedFormGainSays) {
-  constexpr double kPeriod = 0.01, kR = 1e-12, kRatio = 1e-3;
+  constexpr double kR = 1e-12, kRatio = 1e-3;
   const std::size_t n = 20000;
   auto rate = noise(4, n);
-  std::vector<double> time(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    time[k] = static_cast<double>(k) * kPeriod;
-    rate[k] *= std::sqrt(kR);
-  }
-  ifog::ComparisonInput in;
-  in.time_s = time;
-  in.rate = {rate};
-  in.period_s = kPeriod;
+  for (double& each : rate) each *= std::sqrt(kR);
+  const std::vector<double> time = times(n);
   ifog::ComparisonOptions options;
   options.rules = {"ckf"};
   options.settings.process_noise = kRatio * kR / kPeriod;
   options.settings.measurement_noise = kR;
   options.settings.follow_manoeuvres = false;
   options.settings.conserve_angle = false;
-  const auto result = ifog::compare_rules(in, options);
+  const auto result = ifog::compare_rules(input_of(rate, time), options);
   ASSERT_EQ(result.rows.size(), 2U);
   const auto& row = result.rows[1];
   const double p = 0.5 * (kRatio + std::sqrt(kRatio * kRatio + 4.0 * kRatio));  // predicted variance over R
@@ -122,23 +131,17 @@ TEST(Compare, TheConventionalFilterTakesAsLongAsItsClosedFormGainSays) {
 // Two thirds of the record are turns of a thousand sigma; what the innovations say of the noise is said at
 // rest.
 TEST(Compare, InnovationsAreJudgedOutsideManoeuvres) {
-  constexpr double kPeriod = 0.01, kRatio = 1e-3;
+  constexpr double kRatio = 1e-3;
   const std::size_t n = 60000;
   auto rate = noise(5, n);
-  std::vector<double> time(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    time[k] = static_cast<double>(k) * kPeriod;
+  for (std::size_t k = 0; k < n; ++k)
     if (k % 3000 >= 1000) rate[k] += 1000.0 * std::sin(2 * std::numbers::pi * static_cast<double>(k) / 500.0);
-  }
-  ifog::ComparisonInput in;
-  in.time_s = time;
-  in.rate = {rate};
-  in.period_s = kPeriod;
+  const std::vector<double> time = times(n);
   ifog::ComparisonOptions options;
   options.rules = {"ckf", "mmae"};
   options.settings.process_noise = kRatio / kPeriod;
   options.settings.measurement_noise = 1.0;
-  const auto result = ifog::compare_rules(in, options);
+  const auto result = ifog::compare_rules(input_of(rate, time), options);
   for (const auto& row : result.rows) {
     if (row.rule == "raw") continue;
     EXPECT_LT(row.share_at_rest, 0.4) << row.rule;
@@ -151,19 +154,14 @@ TEST(Compare, InnovationsAreJudgedOutsideManoeuvres) {
 
 // A record of which the second third is a turn: its spread and its deviation are those of the two others.
 TEST(Compare, WhatIsSaidAtRestIsOfTheRest) {
-  constexpr double kPeriod = 0.01;
   const std::size_t n = 30000;
   auto rate = noise(6, n);
-  std::vector<double> time(n);
-  for (std::size_t k = 0; k < n; ++k) time[k] = static_cast<double>(k) * kPeriod;
-  ifog::ComparisonInput in;
-  in.time_s = time;
-  in.period_s = kPeriod;
+  const std::vector<double> time = times(n);
+  ifog::ComparisonInput in = input_of(rate, time);
   in.at_rest = {{0, n / 3}, {2 * n / 3, n}};
   ifog::ComparisonOptions options;
   options.settings.process_noise = 1e-3 / kPeriod;
   options.settings.measurement_noise = 1.0;
-  in.rate = {rate};
   const auto still = ifog::compare_rules(in, options);
   for (std::size_t k = n / 3; k < 2 * n / 3; ++k) rate[k] += 500.0;
   in.rate = {rate};

@@ -4,14 +4,9 @@
 //
 // LCM is multicast: the program moves into a network namespace of its own first, so that nothing leaves the
 // machine.
-#include <unistd.h>
-
-#include "daemon/pipeline/pipeline.h"
-#include "drivers/host/driver_instance.h"
 #include "drivers/transport/file/file.h"
-#include "tests/unit/daemon/chain_behind.h"
-#include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/daemon/private_network.h"
+#include "tests/unit/daemon/rig.h"
 #include "tests/unit/malloc_counter.h"
 #include "tests/unit/test.h"
 
@@ -28,30 +23,22 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   const test::OwnFolder folder;
   const std::vector<std::uint8_t> bytes = kvh_frames(0, kCount, [](int n) { return 0.01 + 1e-5 * (n % 17); });
   folder.write("gyro.kvh", {bytes.begin(), bytes.end()});
-  DriverInstance driver = make_driver("kvh1750", {});
   // Recorded, too; the recorder thread, which may allocate, does not run here.
   Tape tape(1U << 20U);
   PipelinePlan plan;
   plan.tape = &tape;
-  plan.lcm_channel = "IFOG_TEST";
   plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"},
                {std::string(kInertialType), "B"},
                {std::string(kInsType), "C"},
                {std::string(kMicrostrainType), "D"},
                {std::string(kKvhBatchType), "E"}};
-  const ChainSettings chain = chain_behind(driver, 1000.0);
-  plan.facts = chain.facts;
-  plan.reader.name = "read";
-  plan.filter.name = "filter";
   FileSettings file;
   file.path = folder.path("gyro.kvh");
   file.pace = FileSettings::Pace::recorded;
   file.bytes_per_second = 36.0 * 2000.0;
   file.block_bytes = 36;
-  Pipeline pipeline(plan, make_file_transport(file), std::move(driver), nullptr,
-                    std::make_unique<ChainParts>(chain),
-                    make_lcm_publisher("udpm://239.255.76.67:7667?ttl=0"));
-  pipeline.open();
+  Rig rig(make_file_transport(file), make_lcm_publisher("udpm://239.255.76.67:7667?ttl=0"), plan);
+  Pipeline& pipeline = *rig.pipeline;
   pipeline.start();
   const auto samples = [&] { return pipeline.reader().books().counts.samples; };
   while (samples() < 1 && !pipeline.ended()) std::this_thread::sleep_for(std::chrono::microseconds(100));

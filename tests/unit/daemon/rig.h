@@ -102,30 +102,34 @@ inline std::vector<std::uint8_t> frames(int count, const std::function<double(in
       0, count, [&](int n) { return rate_of(n) + (disturbed ? disturbed(n) : 0.0); }, temperature_of);
 }
 
+// A pipeline of a KVH 1750 at 1 kHz, its noise given.
 struct Rig {
-  Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
-      std::chrono::microseconds pause = std::chrono::microseconds(0), bool direct = true,
-      Tape* tape = nullptr) {
+  Rig(std::unique_ptr<Transport> from, std::unique_ptr<Publisher> to, PipelinePlan plan)
+      : transport(dynamic_cast<MemoryTransport*>(from.get())),
+        publisher(dynamic_cast<KeepingPublisher*>(to.get())) {
     DriverInstance driver = make_driver("kvh1750", {});
-    PipelinePlan plan;
-    plan.lcm_channel = "IFOG_TEST";
-    plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"}};
     chain = chain_behind(driver, 1000.0);
+    plan.lcm_channel = "IFOG_TEST";
     plan.facts = chain.facts;
-    plan.ring_slots = slots;
-    plan.direct = direct;
-    plan.tape = tape;
     plan.reader.name = "read";
     plan.filter.name = "filter";
-    auto memory = std::make_unique<MemoryTransport>(std::move(bytes), portion, holds_back);
-    transport = memory.get();
-    auto keeping = std::make_unique<KeepingPublisher>(pause);
-    publisher = keeping.get();
-    pipeline = std::make_unique<Pipeline>(plan, std::move(memory), std::move(driver), nullptr,
-                                          std::make_unique<ChainParts>(chain), std::move(keeping));
+    pipeline = std::make_unique<Pipeline>(plan, std::move(from), std::move(driver), nullptr,
+                                          std::make_unique<ChainParts>(chain), std::move(to));
     report = std::make_unique<StatusReport>("test", chain.channels, chain.axes, chain.facts.nominal_rate_hz);
     pipeline->open();
   }
+  Rig(std::vector<std::uint8_t> bytes, std::size_t portion, bool holds_back, std::size_t slots = 1024,
+      std::chrono::microseconds pause = std::chrono::microseconds(0), bool direct = true,
+      Tape* tape = nullptr)
+      : Rig(std::make_unique<MemoryTransport>(std::move(bytes), portion, holds_back),
+            std::make_unique<KeepingPublisher>(pause), [&] {
+              PipelinePlan plan;
+              plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"}};
+              plan.ring_slots = slots;
+              plan.direct = direct;
+              plan.tape = tape;
+              return plan;
+            }()) {}
   void run_to_the_end() {
     pipeline->start();
     wait_for_the_end();
@@ -158,7 +162,7 @@ struct Rig {
     pipeline->stop();
   }
   ChainSettings chain;
-  MemoryTransport* transport;
+  MemoryTransport* transport;  // nullptr: another one
   KeepingPublisher* publisher;
   std::unique_ptr<Pipeline> pipeline;
   std::unique_ptr<StatusReport> report;

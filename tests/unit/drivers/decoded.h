@@ -18,6 +18,11 @@ inline std::vector<ifog_sample> decoded(DriverInstance& driver, std::span<const 
   return samples;
 }
 
+inline std::vector<ifog_sample> decoded(DriverInstance& driver, const std::string& text,
+                                        std::size_t portion = 0) {
+  return decoded(driver, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, 42, portion);
+}
+
 inline std::string refusal(const std::string& driver, const DriverSettings& settings,
                            const std::vector<std::string>& folders = plugin_folders()) {
   return test::refusal([&] { make_driver(driver, settings, folders); });

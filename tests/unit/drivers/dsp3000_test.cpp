@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines written by hand from the maker's description of the 100 Hz interface.
-#include "drivers/host/driver_instance.h"
 #include "drivers/plugins/dsp3000/line.h"
+#include "tests/unit/drivers/decoded.h"
 #include "tests/unit/test.h"
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+using ifog::decoded;
 
-std::vector<ifog_sample> decode(ifog::DriverInstance& driver, const std::string& text) {
-  std::vector<ifog_sample> samples;
-  driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, 5,
-                      [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(Dsp3000, LinesByHand) {
   ifog::DriverInstance driver = ifog::make_driver("dsp3000", {});
-  const std::vector<ifog_sample> s = decode(driver, "\r\n-12.500000 1\r\n  0.004178 1\r\n359.999999 0\r\n");
+  const std::vector<ifog_sample> s = decoded(driver, "\r\n-12.500000 1\r\n  0.004178 1\r\n359.999999 0\r\n");
   ASSERT_EQ(s.size(), 3U);
   EXPECT_DOUBLE_EQ(s[0].value[0], -12.5 * kDegree);
   EXPECT_EQ(s[0].valid_axes, 1U);
   EXPECT_EQ(s[0].flags, 0U);
-  EXPECT_EQ(s[0].arrival_ns, 5);
+  EXPECT_EQ(s[0].arrival_ns, 42);
   EXPECT_DOUBLE_EQ(s[1].value[0], 0.004178 * kDegree);
   EXPECT_DOUBLE_EQ(s[2].value[0], 359.999999 * kDegree);
   EXPECT_EQ(s[2].valid_axes, 0U);
@@ -44,16 +39,16 @@ TEST(Dsp3000, OutputIsWhatTheConfigurationSays) {
   EXPECT_EQ(d.description().opening_length, 3U);
   EXPECT_EQ(d.description().opening[0], 'P');
   ifog::DriverInstance reversed = ifog::make_driver("dsp3000", {{"sign", "-1"}});
-  EXPECT_DOUBLE_EQ(decode(reversed, "\n1.000000 1\r\n").at(0).value[0], -kDegree);
+  EXPECT_DOUBLE_EQ(decoded(reversed, "\n1.000000 1\r\n").at(0).value[0], -kDegree);
 }
 
 // The tail of a number is a number: a line is only believed when its beginning was seen.
 TEST(Dsp3000, APieceOfALineIsNoReading) {
   ifog::DriverInstance driver = ifog::make_driver("dsp3000", {});
-  EXPECT_EQ(decode(driver, "3.500000 1\r\n").size(), 0U);
-  EXPECT_EQ(decode(driver, "123.500000 1\r\n12").size(), 1U);
+  EXPECT_EQ(decoded(driver, "3.500000 1\r\n").size(), 0U);
+  EXPECT_EQ(decoded(driver, "123.500000 1\r\n12").size(), 1U);
   driver.reset();
-  EXPECT_EQ(decode(driver, "3.500000 1\r\n").size(), 0U);
+  EXPECT_EQ(decoded(driver, "3.500000 1\r\n").size(), 0U);
   EXPECT_EQ(driver.counters().frames_format, 0U);
   EXPECT_EQ(driver.counters().bytes_skipped, 11U + 2U + 11U);
 }
@@ -64,7 +59,7 @@ TEST(Dsp3000, AnyLineEndIsTaken) {
     ifog::DriverInstance driver = ifog::make_driver("dsp3000", {});
     std::string text;
     for (int i = 0; i < 5; ++i) text += "  1.00000" + std::to_string(i) + " 1" + end;
-    const std::vector<ifog_sample> s = decode(driver, text);
+    const std::vector<ifog_sample> s = decoded(driver, text);
     ASSERT_EQ(s.size(), 4U) << end.size();
     EXPECT_DOUBLE_EQ(s[3].value[0], 1.000004 * kDegree);
     EXPECT_EQ(driver.counters().frames_format, 0U);
@@ -72,7 +67,7 @@ TEST(Dsp3000, AnyLineEndIsTaken) {
   }
   ifog::DriverInstance datagrams = ifog::make_driver("dsp3000", {});
   std::size_t taken = 0;
-  for (int i = 0; i < 5; ++i) taken += decode(datagrams, "  1.000000 1").size();
+  for (int i = 0; i < 5; ++i) taken += decoded(datagrams, "  1.000000 1").size();
   EXPECT_EQ(taken, 4U);
 }
 
@@ -112,7 +107,7 @@ TEST(Dsp3000, GoodLinesBetweenBadOnesAreKept) {
   std::vector<ifog_sample> s;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t n = 1 + random() % 40;
-    for (const ifog_sample& each : decode(driver, text.substr(at, n))) s.push_back(each);
+    for (const ifog_sample& each : decoded(driver, text.substr(at, n))) s.push_back(each);
     at += n;
   }
   ASSERT_EQ(s.size(), expected.size());
@@ -134,7 +129,7 @@ TEST(Dsp3000, EncodesWhatItDecodes) {
   ifog::DriverInstance reader = ifog::make_driver("dsp3000", {});
   std::size_t samples = 0;
   for (const std::uint8_t byte : bytes)
-    samples += decode(reader, std::string(1, static_cast<char>(byte))).size();
+    samples += decoded(reader, std::string(1, static_cast<char>(byte))).size();
   EXPECT_EQ(samples, 5U);
   EXPECT_EQ(reader.counters().bytes_framed, bytes.size());
   EXPECT_EQ(reader.counters().bytes_skipped, 0U);

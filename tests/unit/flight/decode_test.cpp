@@ -235,11 +235,6 @@ TEST_F(FlightRunsRead, OfAClockThatIsNeverSetNothingIsSaid) {
   EXPECT_EQ(read().between_runs_s, 0.0);
 }
 
-TEST_F(FlightRunsRead, OneRunHasNothingToSay) {
-  run(100, End::stopped);
-  EXPECT_TRUE(losses(read()).empty());
-}
-
 // Nothing more comes: its file is closed all the same, and whoever is killed then has lost nothing.
 TEST_F(FlightRunsRead, ARunThatFellSilentIsWhole) {
   ArchiveLimits limits;

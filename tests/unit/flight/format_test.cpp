@@ -44,35 +44,35 @@ Bytes block_by_hand(int type, std::uint64_t file, std::uint64_t offset, const By
   return out;
 }
 
+void add_block(Bytes& recording, int type, std::uint64_t file, const Bytes& payload) {
+  const Bytes block = block_by_hand(type, file, recording.size(), payload);
+  recording.insert(recording.end(), block.begin(), block.end());
+}
+
+void add_entry(Bytes& entries, int kind, int flags, std::uint64_t time_ns, const Bytes& payload) {
+  put(entries, static_cast<std::uint64_t>(kind), 1);
+  put(entries, static_cast<std::uint64_t>(flags), 1);
+  put(entries, 0, 2);
+  put(entries, payload.size(), 4);
+  put(entries, time_ns, 8);
+  entries.insert(entries.end(), payload.begin(), payload.end());
+}
+
 TEST(FlightFormat, AFileMadeByHandIsRead) {
   constexpr std::uint64_t kFile = 0x1122334455667788;
-  Bytes header;
+  Bytes recording, header, entries, end;
   put(header, kFile, 8);
   put(header, 1, 2);
   put(header,
       "sensor=nose\ncarries=bytes\ndriver=kvh1750\noption.format=b\nchannel=supply_V\nrun=7\nnumber=3\n"
       "a_key_of_later=x\nconfiguration=a\\nb\\\\c\n");
-  Bytes recording = block_by_hand(1, 0, 0, header);
-  Bytes entries;
-  put(entries, 3, 1);  // a channel, number 0, 12.5 V
-  put(entries, 0, 1);
-  put(entries, 0, 2);
-  put(entries, 8, 4);
-  put(entries, 41, 8);
-  put(entries, 0x4029000000000000, 8);
-  put(entries, 1, 1);  // bytes, stamped
-  put(entries, 4, 1);
-  put(entries, 0, 2);
-  put(entries, 3, 4);
-  put(entries, 42, 8);
-  put(entries, "abc");
-  const Bytes data = block_by_hand(2, kFile, recording.size(), entries);
-  recording.insert(recording.end(), data.begin(), data.end());
-  Bytes end;
+  recording = block_by_hand(1, 0, 0, header);
+  add_entry(entries, 3, 0, 41, {0, 0, 0, 0, 0, 0, 0x29, 0x40});  // a channel, 12.5 V
+  add_entry(entries, 1, 4, 42, {'a', 'b', 'c'});                 // bytes, stamped
+  add_block(recording, 2, kFile, entries);
   put(end, 2, 8);
   put(end, 43, 8);
-  const Bytes last = block_by_hand(3, kFile, recording.size(), end);
-  recording.insert(recording.end(), last.begin(), last.end());
+  add_block(recording, 3, kFile, end);
 
   std::size_t at = 0;
   FlightReader reader([&](char* to, std::size_t most) {
@@ -155,10 +155,8 @@ TEST(FlightFormat, AnEntryLongerThanItsBlockIsCountedAndTheNextBlockRead) {
   bad[4] = 200;
   Bytes good;
   append_entry(good, {FlightKind::bytes, 0, 0, 0, 2}, Bytes{8});
-  for (const Bytes& content : {bad, good}) {
-    const Bytes block = block_by_hand(2, 5, recording.size(), content);
-    recording.insert(recording.end(), block.begin(), block.end());
-  }
+  add_block(recording, 2, 5, bad);
+  add_block(recording, 2, 5, good);
   const ReadBack read = read_back(recording);
   EXPECT_EQ(read.payloads, std::vector<Bytes>{Bytes{8}});
   EXPECT_EQ(read.counts.damaged_bytes, bad.size());

@@ -33,18 +33,12 @@ std::string noise_with(const std::string& from, const std::string& to) {
 }
 
 TEST(KeptNoise, ReadsBackToTheBit) {
-  const KeptNoise kept = some();
-  const KeptNoise read = parse_kept_noise(kept_noise_text(kept), "f.toml");
-  EXPECT_EQ(read.sensor, kept.sensor);
-  EXPECT_EQ(read.driver, kept.driver);
-  EXPECT_EQ(read.axes, kept.axes);
-  EXPECT_EQ(read.sample_rate_hz, kept.sample_rate_hz);
-  EXPECT_EQ(read.learned, kept.learned);
-  EXPECT_EQ(read.noise.process_noise, kept.noise.process_noise);
-  EXPECT_EQ(read.noise.measurement_noise, kept.noise.measurement_noise);
-  EXPECT_EQ(read.noise.noise, kept.noise.noise);
-  EXPECT_EQ(read.noise.samples, kept.noise.samples);
-  EXPECT_EQ(read.noise.model, kept.noise.model);
+  const auto all = [](const KeptNoise& k) {
+    return std::tie(k.sensor, k.driver, k.axes, k.sample_rate_hz, k.learned, k.noise.process_noise,
+                    k.noise.measurement_noise, k.noise.noise, k.noise.samples, k.noise.model);
+  };
+  const KeptNoise kept = some(), read = parse_kept_noise(kept_noise_text(kept), "f.toml");
+  EXPECT_EQ(all(read), all(kept));
 }
 
 // As written before the model was said.

@@ -34,23 +34,39 @@ Made made(std::size_t n, double share, double swing, double walk, unsigned seed)
   return out;
 }
 
+struct LeastSquares {
+  double share = 0.0, error = 0.0;  // for noise of 1
+};
+
+// With a constant, on means over `each` samples.
+LeastSquares on_means(const Made& data, std::size_t each) {
+  std::vector<double> d, e;
+  for (std::size_t i = 0; i < data.before.size(); i += each) {
+    const std::size_t end = std::min(i + each, data.before.size());
+    const auto mean = [&](const std::vector<double>& of) {
+      return std::accumulate(&of[i], &of[i] + (end - i), 0.0) / static_cast<double>(end - i);
+    };
+    e.push_back(mean(data.before));
+    d.push_back(e.back() - mean(data.after));
+  }
+  const auto n = static_cast<double>(d.size());
+  const double d_mean = std::accumulate(d.begin(), d.end(), 0.0) / n,
+               e_mean = std::accumulate(e.begin(), e.end(), 0.0) / n;
+  double dd = 0.0, de = 0.0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    dd += (d[i] - d_mean) * (d[i] - d_mean);
+    de += (d[i] - d_mean) * (e[i] - e_mean);
+  }
+  return {de / dd, 1.0 / std::sqrt(dd)};
+}
+
 TEST(Promise, InWhiteNoiseItIsLeastSquares) {
   const Made data = made(20000, 0.9, 0.3, 0.0, 1);
-  double d_mean = 0.0, e_mean = 0.0, dd = 0.0, de = 0.0;
-  const auto n = static_cast<double>(data.before.size());
-  for (std::size_t i = 0; i < data.before.size(); ++i) {
-    d_mean += (data.before[i] - data.after[i]) / n;
-    e_mean += data.before[i] / n;
-  }
-  for (std::size_t i = 0; i < data.before.size(); ++i) {
-    const double d = data.before[i] - data.after[i] - d_mean;
-    dd += d * d;
-    de += d * (data.before[i] - e_mean);
-  }
+  const LeastSquares expected = on_means(data, 1);
   const PromiseKept kept = weigh_promise(data.trial());
   EXPECT_EQ(kept.walk_ratio, 0.0);
-  EXPECT_NEAR(kept.share, de / dd, 1e-9);
-  EXPECT_NEAR(kept.share_error, 1.0 / std::sqrt(dd), 0.35 / std::sqrt(dd));
+  EXPECT_NEAR(kept.share, expected.share, 1e-9);
+  EXPECT_NEAR(kept.share_error, expected.error, 0.35 * expected.error);
   EXPECT_DOUBLE_EQ(kept.seconds, 2000.0);
 }
 
@@ -119,38 +135,15 @@ RunningTrial running(const Made& data, double every_s) {
   return trial;
 }
 
-// Least squares with a constant on means over `each` samples.
-double share_by_means(const Made& data, std::size_t each) {
-  std::vector<double> d, e;
-  for (std::size_t i = 0; i < data.before.size(); i += each) {
-    double sum_d = 0.0, sum_e = 0.0, count = 0.0;
-    for (std::size_t k = i; k < std::min(i + each, data.before.size()); ++k) {
-      sum_d += data.before[k] - data.after[k];
-      sum_e += data.before[k];
-      count += 1.0;
-    }
-    d.push_back(sum_d / count);
-    e.push_back(sum_e / count);
-  }
-  const auto n = static_cast<double>(d.size());
-  double d_mean = 0.0, e_mean = 0.0, dd = 0.0, de = 0.0;
-  for (std::size_t i = 0; i < d.size(); ++i) d_mean += d[i] / n, e_mean += e[i] / n;
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    dd += (d[i] - d_mean) * (d[i] - d_mean);
-    de += (d[i] - d_mean) * (e[i] - e_mean);
-  }
-  return de / dd;
-}
-
 TEST(RunningTrial, WeighsMeansOfASecondAndOfAsManyAsALongRecordNeeds) {
   const Made data = made(50000, 0.9, 0.8, 0.0, 8);
   const auto seconds = running(data, 0.1).weigh(0);  // 5000 s
   ASSERT_TRUE(seconds);
   EXPECT_FALSE(seconds->denied);
-  EXPECT_NEAR(seconds->share, share_by_means(data, 10), 1e-6);
+  EXPECT_NEAR(seconds->share, on_means(data, 10).share, 1e-6);
   const auto widened = running(data, 1.0).weigh(0);  // 50000 s: 16384 means at most, of 4 s
   ASSERT_TRUE(widened);
-  EXPECT_NEAR(widened->share, share_by_means(data, 4), 1e-6);
+  EXPECT_NEAR(widened->share, on_means(data, 4).share, 1e-6);
 }
 
 TEST(RunningTrial, ACauseThatOnlyRanAlongIsBroken) {

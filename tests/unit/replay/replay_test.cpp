@@ -1,28 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
-// `ifog replay` as a user runs it, and the two small parts it is made of. How late it is, is measured beside
-// canplayer in tests/bench/replay; here nothing may come early or be lost.
+// What `ifog replay` does when the system has no room (the system is a stand-in that answers as told), how late it says that it
+// is, and a flight recording that it sends again. As a user runs it: tests/system/command_line/replay.py.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include "daemon/sensor/duration_histogram.h"
+#include "drivers/flight/archive.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
 #include "tests/unit/test.h"
+#include "tools/ifog/replay/replay_target.h"
 
+namespace ifog::tools {
 namespace {
 
-namespace fs = std::filesystem;
+// An answer above 0: takes at most so many bytes; 0: takes none; below: fails with this errno.
+class ToldOutlet final : public Outlet {
+ public:
+  explicit ToldOutlet(std::deque<int> answers) : Outlet("can0", -1), answers_(std::move(answers)) {}
+  ssize_t write(const void* bytes, std::size_t n) override {
+    ++writes_;
+    int answer = static_cast<int>(n);
+    if (!answers_.empty()) {
+      answer = answers_.front();
+      answers_.pop_front();
+    }
+    if (answer < 0) {
+      errno = -answer;
+      return -1;
+    }
+    const auto taken = std::min(n, static_cast<std::size_t>(answer));
+    sent_.append(static_cast<const char*>(bytes), taken);
+    return static_cast<ssize_t>(taken);
+  }
+  void pause(int error) override { paused_.push_back(error); }
+
+  std::deque<int> answers_;
+  std::string sent_;
+  std::vector<int> paused_;
+  int writes_ = 0;
+};
+
+TEST(Outlet, AFullCanQueueIsWaitedForAndTheFrameGoesOnce) {
+  ToldOutlet outlet({-ENOBUFS, -ENOBUFS, -EAGAIN, -EINTR});
+  EXPECT_TRUE(outlet.send_datagram("frame-1", 7));
+  EXPECT_TRUE(outlet.send_datagram("frame-2", 7));
+  EXPECT_EQ(outlet.sent_, "frame-1frame-2");
+  EXPECT_EQ(outlet.retries(), 3U);  // an interrupted call is not a lack of room
+  EXPECT_EQ(outlet.paused_, (std::vector<int>{ENOBUFS, ENOBUFS, EAGAIN}));
+}
+
+TEST(Outlet, AFrameOfWhichAPartWentIsAFailure) {
+  ToldOutlet outlet({5});
+  EXPECT_EQ(test::refusal([&] { outlet.send_datagram("frame-1", 7); }),
+            "can0: cannot send: 5 of 7 bytes of a frame were accepted");
+}
+
+TEST(Outlet, ShortWritesOfBytesGoOnWhereTheyEnded) {
+  ToldOutlet outlet({3, 0, 1, -EAGAIN, 2});
+  EXPECT_TRUE(outlet.send_bytes("0123456789", 10));
+  EXPECT_EQ(outlet.sent_, "0123456789");
+  EXPECT_EQ(outlet.writes_, 6);
+  EXPECT_EQ(outlet.retries(), 5U);
+  EXPECT_EQ(outlet.paused_, (std::vector<int>{EAGAIN, EAGAIN}));
+}
+
+TEST(Outlet, AnyOtherFailureIsOneLine) {
+  for (const auto& [error, line] : {std::pair{ENETDOWN, "can0: cannot send: Network is down"},
+                                    {EPIPE, "can0: the reader went away"},
+                                    {EIO, "can0: cannot send: Input/output error"}}) {
+    ToldOutlet outlet({-error});
+    EXPECT_EQ(test::refusal([&] { outlet.send_bytes("x", 1); }), line);
+  }
+}
+
+}  // namespace
+}  // namespace ifog::tools
+
+namespace ifog {
+namespace {
+
+// This build's program, also where it is built with a sanitizer.
+TEST(Replay, AsAUserRunsIt) {
+  EXPECT_EQ(std::system("python3 " IFOG_SOURCE_DIR "/tests/system/command_line/replay.py " IFOG_PROGRAM
+                        " " IFOG_SOURCE_DIR),
+            0);
+}
 
 TEST(DurationHistogram, PercentilesAreWithinABucketOfTheSortedValues) {
-  ifog::DurationHistogram late;
+  DurationHistogram late;
   std::vector<std::int64_t> values;
-  std::uint64_t x = 1;
+  std::mt19937_64 random(1);
   for (int i = 0; i < 20'000; ++i) {
-    x = x * 6364136223846793005ULL + 1442695040888963407ULL;
-    values.push_back(static_cast<std::int64_t>(x >> (24U + x % 36U)));
+    values.push_back(static_cast<std::int64_t>(random() >> (24U + random() % 36U)));
     late.add(values.back());
   }
   std::sort(values.begin(), values.end());
@@ -42,208 +114,89 @@ TEST(DurationHistogram, PercentilesAreWithinABucketOfTheSortedValues) {
 }
 
 TEST(Pace, DeadlinesComeFromTheFirstAndKeepNanosecondsForDays) {
-  ifog::Pace pace;
-  pace.start(1'700'000'000'000'000'000, 5);
-  constexpr std::int64_t kTenDays_ns = 864'000'000'000'001;
-  EXPECT_EQ(pace.due_ns(1'700'000'000'000'000'000 + kTenDays_ns), 5 + kTenDays_ns);
-  EXPECT_EQ(pace.due_ns(1'699'999'999'999'999'999), 4);
-  ifog::Pace slow(0.5);
+  constexpr std::int64_t kFirst_ns = 1'700'000'000'000'000'000, kTenDays_ns = 864'000'000'000'001;
+  Pace pace, slow(0.5);
+  pace.start(kFirst_ns, 5);
+  EXPECT_EQ(pace.due_ns(kFirst_ns + kTenDays_ns), 5 + kTenDays_ns);
+  EXPECT_EQ(pace.due_ns(kFirst_ns - 1), 4);
   slow.start(100, 1000);
   EXPECT_EQ(slow.due_ns(200), 1200);
 }
 
-class Replay : public testing::Test, protected ifog::test::OwnFolder {
+// A flight recording goes out again as it came in: each delivery by itself, never before its time.
+
+constexpr std::int64_t kMillisecond = 1'000'000, kBegan = 1'700'000'000'000'000'000;
+// When the deliveries came, behind the first: evenly, two at once, and after a pause.
+const std::vector<std::int64_t> kCame_ms{0, 20, 40, 40, 41, 190, 200};
+
+class RecordedTimes : public testing::Test, protected test::OwnFolder {
  protected:
-  // Exit status; what it prints goes to the file `out`.
-  int ifog(const std::string& arguments) const {
-    const std::string command = IFOG_PROGRAM " replay " + arguments + " >" + path("out") + " 2>&1";
-    return WEXITSTATUS(std::system(command.c_str()));
-  }
-  // The same under way, with what it prints in the same place.
-  pid_t started(std::vector<std::string> words) const {
-    words.insert(words.begin(), {"ifog", "replay"});
-    std::ofstream(path("out")).close();
-    const pid_t child = fork();
-    if (child != 0) return child;
-    const int out = open(path("out").c_str(), O_WRONLY | O_APPEND);
-    dup2(out, STDOUT_FILENO);
-    dup2(out, STDERR_FILENO);
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    execv(IFOG_PROGRAM, argv.data());
-    _exit(127);
-  }
-  // Exit status of a replay that is interrupted in the middle, into again.log with a report.json.
-  int interrupted_in(const std::vector<std::string>& options) const {
-    std::vector<std::string> words{log(), "--to", "file:" + path("again.log"), "--json", path("report.json")};
-    words.insert(words.end(), options.begin(), options.end());
-    const pid_t child = started(words);
-    // Until it is whole the file has no name: it is seen among what the process has open, in the folder that
-    // it will be in. Elsewhere there are others, as the copy of a plugin.
-    const auto written = [&] {
-      std::uintmax_t most = 0;
-      for (const auto& one : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
-        struct stat file {};
-        std::error_code gone;
-        if (!fs::read_symlink(one.path(), gone).string().starts_with(folder())) continue;
-        if (stat(one.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
-          most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
-      }
-      return most;
-    };
-    int status = 0;
-    while (written() < 1000) {
-      if (waitpid(child, &status, WNOHANG) != 0) return -1;  // it ended by itself
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  // Delivery n is n + 1 bytes 'a' + n, or a CAN frame with n.
+  void record(FlightHeader::Carries carries) const {
+    FlightHeader header;
+    header.sensor = "nose";
+    header.driver = "none that is there";
+    header.carries = carries;
+    ArchiveLimits limits;
+    limits.file_bytes = 400;  // over several files
+    FlightArchive archive(make_flight_folder(path("record")), limits, header);
+    for (std::size_t n = 0; n < kCame_ms.size(); ++n) {
+      const std::int64_t read_ns = kBegan + kCame_ms[n] * kMillisecond;
+      const auto letter = static_cast<std::uint8_t>('a' + n);
+      if (carries == FlightHeader::Carries::can)
+        archive.add({FlightKind::can, kFlightStamped, 0, 0, read_ns},
+                    std::vector<std::uint8_t>{0x23, 1, 0, 0, 0, 1, letter});
+      else
+        archive.add({FlightKind::bytes, 0, 0, 0, read_ns}, std::vector<std::uint8_t>(n + 1, letter));
+      archive.turn(read_ns, read_ns, true);
     }
-    kill(child, SIGINT);
-    return waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  // 100 frames, 1 ms apart.
-  std::string log() const {
-    std::ofstream out(path("gyro.log"));
-    for (int i = 0; i < 100; ++i)
-      out << "(1700000000." << (100'000 + i * 1000) << ") can3 12345678#" << std::to_string(1000 + i) << "\n";
-    return path("gyro.log");
+  // Exit status; what it prints goes to the file `said`.
+  [[nodiscard]] int replay(const std::string& arguments) const {
+    return WEXITSTATUS(std::system(
+        (IFOG_PROGRAM " replay " + path("record") + " " + arguments + " >" + path("said") + " 2>&1")
+            .c_str()));
   }
 };
 
-TEST_F(Replay, WritesTheSameLogNeverEarly) {
-  const std::int64_t before = ifog::monotonic_ns();
-  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --json " + path("report.json")), 0)
-      << content("out");
-  EXPECT_GE(ifog::monotonic_ns() - before, 99'000'000);
-  EXPECT_EQ(content("again.log"), content("gyro.log"));
-  const auto report = nlohmann::json::parse(content("report.json"));
-  EXPECT_EQ(report["schema"], "ifog.replay/1");
-  EXPECT_EQ(report["sent"], 100);
-  EXPECT_EQ(report["unit"], "frame");
-  EXPECT_GE(report["seconds"], 0.099);
-  EXPECT_LE(report["lateness_us"]["p50"], report["lateness_us"]["p99"]);
-  EXPECT_LE(report["lateness_us"]["p99"], report["lateness_us"]["max"]);
-}
-
-TEST_F(Replay, EachFrameGoesToALogWithItsInterfaceAndTwoDevicesNotOntoOneBus) {
-  std::ofstream(path("two.log"))
-      << "(1.000000) vcan0 123#11\n(1.000000) vcan1 123#22\n(1.001000) vcan0 123#33\n";
-  ASSERT_EQ(ifog(path("two.log") + " --speed 0 --to file:" + path("again.log")), 0) << content("out");
-  EXPECT_EQ(content("again.log"),
-            "(0000000001.000000) vcan0 123#11\n(0000000001.000000) vcan1 123#22\n(0000000001.001000) vcan0 "
-            "123#33\n");
-  ASSERT_EQ(ifog(path("two.log") + " --channel vcan1 --speed 0 --to file:" + path("again.log")), 0);
-  EXPECT_EQ(content("again.log"), "(0000000001.000000) vcan1 123#22\n");
-  EXPECT_EQ(ifog(path("two.log") + " --to can:vcan0"), 1);
-  EXPECT_EQ(content("out"),
-            "ifog: " + path("two.log") +
-                ": frames of one id come on 'vcan0' and on 'vcan1', as from two devices, expected "
-                "--channel with one of them\n");
-}
-
-TEST_F(Replay, LoopsAndScales) {
-  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --loop 3 --speed 20"), 0) << content("out");
-  EXPECT_EQ(content("again.log"), content("gyro.log") + content("gyro.log") + content("gyro.log"));
-  ASSERT_EQ(ifog(log() + " --to file:" + path("again.log") + " --loop 3 --speed 0"), 0) << content("out");
-  EXPECT_EQ(content("again.log"), content("gyro.log") + content("gyro.log") + content("gyro.log"));
-}
-
-TEST_F(Replay, SendsRawBytesInBlocks) {
-  std::string bytes;
-  for (int i = 0; i < 1001; ++i) bytes += static_cast<char>(i * 7);
-  std::ofstream(path("gyro.bin"), std::ios::binary) << bytes;
-  ASSERT_EQ(ifog(path("gyro.bin") + " --block 100 --rate 1000 --to file:" + path("again.bin")), 0)
-      << content("out");
-  EXPECT_EQ(content("again.bin"), bytes);
-  EXPECT_TRUE(ifog::test::has(content("out"), "sent 11 blocks"));
-  EXPECT_EQ(ifog(path("gyro.bin") + " --to file:" + path("x")), 1);
-  EXPECT_EQ(content("out"),
-            "ifog: " + path("gyro.bin") +
-                ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME\n");
-}
-
-// Rows become KVH frames of 40 bytes, which the driver cuts again where each ends.
-TEST_F(Replay, EncodesACaptureAndCutsBytesByTheDriver) {
-  std::ofstream out(path("gyro.csv"));
-  out << "time_s,rate_x_radps,rate_y_radps,rate_z_radps\n";
-  for (int i = 0; i < 50; ++i) out << i * 0.001 << "," << i * 1e-3 << ",0,0\n";
-  out.close();
-  ASSERT_EQ(ifog(path("gyro.csv") + " --driver kvh1750 --option format=b --to file:" + path("gyro.kvh")), 0)
-      << content("out");
-  EXPECT_EQ(content("gyro.kvh").size(), 50U * 40U);
-  EXPECT_EQ(content("gyro.kvh").substr(0, 4), "\xFE\x81\xFF\x56");
-  ASSERT_EQ(ifog(path("gyro.kvh") + " --driver kvh1750 --option format=b --to file:" + path("again.kvh")), 0)
-      << content("out");
-  EXPECT_EQ(content("again.kvh"), content("gyro.kvh"));
-  EXPECT_TRUE(ifog::test::has(content("out"), "sent 50 blocks"));
-  EXPECT_EQ(ifog(path("gyro.csv") + " --to file:" + path("x")), 1);
-}
-
-// One without end comes to its end by the interrupt; of another that is less than what was asked for, which is a failure
-// that says how much was sent.
-TEST_F(Replay, AnInterruptEndsItWithTheReport) {
-  for (const bool endless : {true, false}) {
-    EXPECT_EQ(interrupted_in({"--loop", endless ? "0" : "20000"}), endless ? 0 : 1);
-    const auto report = nlohmann::json::parse(content("report.json"));
-    EXPECT_EQ(report["interrupted"], true);
-    EXPECT_EQ(report["failed"], false);
-    EXPECT_EQ(report["of"], endless ? nlohmann::json() : nlohmann::json(2'000'000));
-    const std::string sent = content("again.log");
-    EXPECT_EQ(report["sent"], std::count(sent.begin(), sent.end(), '\n'));
-    const std::string said =
-        "interrupted: sent " + std::to_string(report["sent"].get<int>()) + " of 2000000 frames in ";
-    EXPECT_EQ(content("out").starts_with(said), !endless) << content("out");
-  }
-}
-
-TEST_F(Replay, AnInterruptedWaitForAReaderIsSaid) {
-  const std::string capture = log();
-  const pid_t child = started({capture, "--to", "fifo:" + path("fifo")});
-  while (content("out").find("waiting for a reader") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    kill(child, SIGINT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  // A second signal, where the first came before the wait, ends it by itself.
-  if (WIFSIGNALED(status)) return;
-  EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_TRUE(ifog::test::has(content("out"), "interrupted before anything was sent"));
-}
-
-// What was collected to be written together and then not taken has not been sent.
-TEST_F(Replay, WhatTheTargetDidNotTakeIsNotSaidToBeSent) {
-  EXPECT_EQ(ifog(log() + " --speed 0 --loop 5 --to file:/dev/full --json " + path("report.json")), 1);
-  EXPECT_TRUE(ifog::test::has(content("out"), "failed: sent 0 of 500 frames in "));
-  const auto report = nlohmann::json::parse(content("report.json"));
-  EXPECT_EQ(report["sent"], 0);
-  EXPECT_EQ(report["of"], 500);
-  EXPECT_EQ(report["failed"], true);
-}
-
-TEST_F(Replay, AReaderThatGoesAwayIsAFailureWithAReport) {
+TEST_F(RecordedTimes, BytesIntoAFifo) {
+  record(FlightHeader::Carries::bytes);
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::vector<std::pair<std::int64_t, std::string>> got;  // when it was here, and what
   std::thread reader([&] {
-    std::ifstream in(path("fifo"));
-    std::string line;
-    std::getline(in, line);
+    const int fd = open(path("fifo").c_str(), O_RDONLY);
+    std::string piece(100, '\0');
+    for (ssize_t n = 0; (n = read(fd, piece.data(), piece.size())) > 0;)
+      got.emplace_back(monotonic_ns(), piece.substr(0, static_cast<std::size_t>(n)));
+    close(fd);
   });
-  EXPECT_EQ(ifog(log() + " --loop 0 --to fifo:" + path("fifo")), 1);
+  const std::int64_t started_ns = monotonic_ns();
+  EXPECT_EQ(replay("--to fifo:" + path("fifo")), 0) << content("said");
   reader.join();
-  EXPECT_TRUE(ifog::test::has(content("out"), "fifo: the reader went away"));
-  EXPECT_TRUE(ifog::test::has(content("out"), "failed: sent "));
-  EXPECT_TRUE(ifog::test::has(content("out"), "lateness p50"));
+  std::string all, expected;
+  for (const auto& [at_ns, piece] : got) {
+    // Whatever came with it or after it, the last of it was due.
+    EXPECT_GE(at_ns - started_ns, kCame_ms.at(static_cast<std::size_t>(piece.back() - 'a')) * kMillisecond)
+        << piece;
+    all += piece;
+  }
+  for (std::size_t n = 0; n < kCame_ms.size(); ++n)
+    expected += std::string(n + 1, static_cast<char>('a' + n));
+  EXPECT_EQ(all, expected);
 }
 
-TEST_F(Replay, WrongUseIsTwoWhatCannotBeSentIsOne) {
-  EXPECT_EQ(ifog(log() + " --to nowhere"), 2);
-  EXPECT_EQ(ifog(log()), 2);
-  EXPECT_EQ(ifog(log() + " --to file:" + path("x") + " --speed -1"), 2);
-  EXPECT_EQ(ifog(log() + " --to serial:/dev/null"), 1);
-  EXPECT_EQ(content("out"), "ifog: /dev/null: CAN frames cannot go onto a serial line, expected bytes\n");
-  std::ofstream(path("empty.log")).close();
-  EXPECT_EQ(ifog(path("empty.log") + " --to file:" + path("x")), 1);
-  EXPECT_EQ(content("out"), "ifog: " + path("empty.log") + ": nothing in it to send\n");
+// The log has their times, and says nothing of a driver that is not there.
+TEST_F(RecordedTimes, FramesIntoALog) {
+  record(FlightHeader::Carries::can);
+  const std::int64_t started_ns = monotonic_ns();
+  ASSERT_EQ(replay("--channel can7 --to file:" + path("again.log")), 0) << content("said");
+  EXPECT_GE(monotonic_ns() - started_ns, kCame_ms.back() * kMillisecond);
+  EXPECT_EQ(
+      content("again.log"),
+      "(1700000000.000000) can7 123#61\n(1700000000.020000) can7 123#62\n(1700000000.040000) can7 123#63\n"
+      "(1700000000.040000) can7 123#64\n(1700000000.041000) can7 123#65\n(1700000000.190000) can7 123#66\n"
+      "(1700000000.200000) can7 123#67\n");
 }
 
 }  // namespace
+}  // namespace ifog

@@ -107,31 +107,24 @@ inline void make_series(DiagnosisSeries& s, const Example& e, const Parts& parts
   const std::size_t block = 20;
   s.names = {"linear temperature_degC", "lookup ramp_counts"};
   s.contribution_radps.resize(2);
+  const auto mean = [&](const std::vector<double>& of, std::size_t from) {
+    return std::accumulate(&of[from], &of[from] + block, 0.0) / static_cast<double>(block);
+  };
   for (std::size_t k = 0; k + block <= kSamples; k += block) {
-    double a = 0.0, t = 0.0, q = 0.0;
-    for (std::size_t i = k; i < k + block; ++i)
-      a += parts.noise[i], t += parts.temperature[i], q += parts.ramp[i];
-    const auto m = static_cast<double>(block);
     s.time_s.push_back(e.time_s[k]);
-    s.after_radps.push_back(a / m);
-    s.before_radps.push_back((a + t + q) / m);
-    s.contribution_radps[0].push_back(t / m);
-    s.contribution_radps[1].push_back(q / m);
+    s.after_radps.push_back(mean(parts.noise, k));
+    s.contribution_radps[0].push_back(mean(parts.temperature, k));
+    s.contribution_radps[1].push_back(mean(parts.ramp, k));
+    s.before_radps.push_back(mean(parts.noise, k) + mean(parts.temperature, k) + mean(parts.ramp, k));
   }
-  for (double f = 1e-3; f < 10.0; f *= 1.05) {
-    const double white = 2e-7, slow = 3e-9 / f,
-                 line = 4e-6 * std::exp(-std::pow((std::log(f) + 0.85) / 0.03, 2.0));
-    s.frequency_hz.push_back(f);
-    s.after_radps_rthz.push_back(white);
-    s.before_radps_rthz.push_back(white + slow + line);
-  }
-  for (double tau = 0.05; tau < 400.0; tau *= 1.4) {
-    s.tau_s.push_back(tau);
-    s.after_adev_radps.push_back(1.34e-7 / std::sqrt(tau));
-    s.after_adev_low_radps.push_back(1.30e-7 / std::sqrt(tau));
-    s.after_adev_high_radps.push_back(1.38e-7 / std::sqrt(tau));
-    s.before_adev_radps.push_back(std::hypot(1.34e-7 / std::sqrt(tau), 8e-10 * tau));
-  }
+  s.frequency_hz = {1e-3, 1e-2, 1.0, 10.0};
+  s.after_radps_rthz = {2e-7, 2e-7, 2e-7, 2e-7};
+  s.before_radps_rthz = {3e-6, 5e-7, 4e-6, 2e-7};
+  s.tau_s = {0.05, 1.0, 20.0, 400.0};
+  s.after_adev_radps = {6e-7, 1.34e-7, 3e-8, 7e-9};
+  s.after_adev_low_radps = {5.9e-7, 1.3e-7, 2.8e-8, 5e-9};
+  s.after_adev_high_radps = {6.1e-7, 1.38e-7, 3.2e-8, 9e-9};
+  s.before_adev_radps = {6e-7, 1.35e-7, 4e-8, 3e-7};
 }
 
 inline Example make() {

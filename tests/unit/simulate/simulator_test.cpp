@@ -285,17 +285,22 @@ double allan_variance(const std::vector<double>& rate, std::size_t m) {
 void expect_form(const NoiseLevels& levels, double rate_hz, double (*form)(const NoiseLevels&, double)) {
   constexpr std::size_t kSamples = 1U << 15U;
   constexpr int kRecords = 40;
-  for (const std::size_t m : {1U, 2U, 8U, 64U, 512U, 4096U}) {
-    double sum = 0.0, square = 0.0;
-    for (int record = 0; record < kRecords; ++record) {
-      const auto rate =
-          ifog::simulate::noise(levels, rate_hz, kSamples, 100 + static_cast<std::uint64_t>(record));
+  struct Sums {
+    double ratio = 0.0, square = 0.0;
+  };
+  std::map<std::size_t, Sums> of{{1, {}}, {2, {}}, {8, {}}, {64, {}}, {512, {}}, {4096, {}}};
+  for (int record = 0; record < kRecords; ++record) {
+    const auto rate =
+        ifog::simulate::noise(levels, rate_hz, kSamples, 100 + static_cast<std::uint64_t>(record));
+    for (auto& [m, sums] : of) {
       const double ratio = allan_variance(rate, m) / form(levels, static_cast<double>(m) / rate_hz);
-      sum += ratio;
-      square += ratio * ratio;
+      sums.ratio += ratio;
+      sums.square += ratio * ratio;
     }
-    const double mean = sum / kRecords;
-    const double error = std::sqrt((square / kRecords - mean * mean) / (kRecords - 1));
+  }
+  for (const auto& [m, sums] : of) {
+    const double mean = sums.ratio / kRecords;
+    const double error = std::sqrt((sums.square / kRecords - mean * mean) / (kRecords - 1));
     EXPECT_LT(std::abs(mean - 1.0), 4.0 * error + 0.004)
         << "m = " << m << ", mean " << mean << " ± " << error;
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/clock.h"
-#include "drivers/transport/transport.h"
 #include "tests/unit/test.h"
 
 namespace ifog {
@@ -82,40 +81,6 @@ TEST(Backlog, AfterAReadThatWasLeftOrEnteredLateTimesAreNotKnownUntilItIsThrough
     backlog.over();
     EXPECT_FALSE(backlog.read(at + 1'000'000, at + 1'500'000, 250'000'000));
   }
-}
-
-// Away for a fifth of a second behind its first byte.
-class Pulled final : public Transport {
- public:
-  Pulled() : Transport("pulled") {}
-
- private:
-  bool connect(std::string& /*warning*/, std::int64_t /*until_ns*/) override {
-    if (monotonic_ns() < back_ns_) throw OpenError(name(), "cannot open", ENOENT, "a device");
-    return true;
-  }
-  Delivery receive(std::int64_t /*until_ns*/) noexcept override {
-    Delivery delivery;
-    if (reads_++ == 1) {
-      back_ns_ = monotonic_ns() + kSecond / 5;
-      lost(ENODEV);
-    } else {
-      delivery.bytes = byte_;
-      delivery.arrival_ns = arrival_clock_ns();
-    }
-    return delivery;
-  }
-  std::array<std::uint8_t, 1> byte_{};
-  int reads_ = 0;
-  std::int64_t back_ns_ = 0;
-};
-
-TEST(Backlog, NothingPilesUpInADeviceThatWasAway) {
-  Pulled device;
-  device.open({});
-  Delivery came = device.read(std::chrono::milliseconds(10));
-  while (!came.restarted) came = device.read(std::chrono::milliseconds(10));
-  EXPECT_GT(came.arrival_ns, 0);
 }
 
 }  // namespace

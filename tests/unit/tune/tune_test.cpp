@@ -7,15 +7,7 @@
 namespace {
 
 using ifog::Tuning;
-
-// mt19937_64 is fixed by the standard; only the normal distribution on it may differ between libraries, and
-// the tests below hold for any normal noise.
-struct Noise {
-  std::mt19937_64 engine;
-  std::normal_distribution<double> normal;
-  explicit Noise(unsigned seed) : engine(seed) {}
-  double operator()() { return normal(engine); }
-};
+using ifog::test::Noise;
 
 Tuning tuned(const std::vector<double>& rate, double period, std::vector<std::string> states = {}) {
   const std::span<const double> axes[] = {rate};
@@ -124,7 +116,7 @@ TEST(Tune, PicksTheModelThatMadeTheData) {
   EXPECT_NEAR(phi2.value, -0.8, 4.0 * *phi2.std_error);
   EXPECT_LT(*phi1.std_error, 0.02);
 
-  const Tuning plain = tuned(random_walk(11, 8000, 1e-15, 1e-12, 0.0), 0.01);
+  const Tuning plain = tuned(random_walk(11, 4000, 1e-15, 1e-12, 0.0), 0.01);
   EXPECT_EQ(plain.models[0].settings.state, "random-walk");
 }
 
@@ -137,7 +129,7 @@ TEST(Tune, PicksTheOrderOfAFastColour) {
     Noise noise(100 + seed);
     std::vector<double> z;
     double level = 0.0, colour = noise() / std::sqrt(0.75);
-    for (int k = 0; k < 6000; ++k) {
+    for (int k = 0; k < 4000; ++k) {
       level += 1e-3 * noise();
       colour = 0.5 * colour + noise();
       z.push_back(1e-6 * (level + colour + 0.5 * noise()));

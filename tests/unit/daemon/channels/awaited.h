@@ -16,11 +16,8 @@ struct Value {
 };
 
 inline Value look(const ChannelTable& table) {
-  Value out{};
   const ChannelValue latest = table.latest(0);
-  out.value = latest.value;
-  out.age_s = latest.age_s(realtime_ns());
-  return out;
+  return {latest.value, latest.age_s(realtime_ns())};
 }
 
 // Waits for a value; the test's own time limit ends a wait that would never.

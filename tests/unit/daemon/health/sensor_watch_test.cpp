@@ -192,7 +192,7 @@ TEST(StepTest, AlarmsNoMoreOftenThanItIsAllowedTo) {
     StepTest learned(kBlocks);
     std::mt19937_64 before(99);
     for (int n = 0; colour > 0.0 && n < 100'000; ++n) (void)alarms(learned, before);
-    const double found = mean_time_to_alarm(test::fewer(200, 20), [&](unsigned seed) {
+    const double found = mean_time_to_alarm(test::fewer(100, 20), [&](unsigned seed) {
       std::mt19937_64 random(seed);
       StepTest test = learned;
       test.restart();
@@ -269,7 +269,7 @@ TEST(SensorWatch, OfABiasThatWandersNothingIsNoticedButMostStepsAre) {
   learned.run(36.0 * kHour);
   ASSERT_LT(learned.made.found_s, 0.0) << learned.made.watch.words();
   int found = 0;
-  constexpr int kTrials = 200;
+  constexpr int kTrials = 100;
   for (int trial = 1; trial <= kTrials; ++trial) {
     Wandering each = learned;
     each.turn(static_cast<unsigned>(trial));
@@ -278,7 +278,7 @@ TEST(SensorWatch, OfABiasThatWandersNothingIsNoticedButMostStepsAre) {
     each.run(10.0 * kMinute);
     found += (each.made.watch.noticed() & status_t::NOTICED_BIAS) != 0 ? 1 : 0;
   }
-  EXPECT_GT(found, 140);
+  EXPECT_GT(found, 70);
 }
 
 }  // namespace
