@@ -8,32 +8,21 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/checks/predicted_capture.h"
+#include "filters/diagnosis/checks/checks.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/report/before_and_after.h"
-#include "filters/diagnosis/report/findings.h"
-#include "filters/diagnosis/report/left_out.h"
-#include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/diagnosis/report/series.h"
-#include "filters/diagnosis/report/written_model.h"
-#include "filters/diagnosis/residual/dead_zone.h"
-#include "filters/diagnosis/residual/hysteresis.h"
+#include "filters/diagnosis/report/report.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/periodogram.h"
-#include "filters/diagnosis/residual/unexplained.h"
-#include "filters/diagnosis/search/earth_rate.h"
-#include "filters/diagnosis/search/plausible.h"
+#include "filters/diagnosis/residual/residual.h"
+#include "filters/diagnosis/search/first_reading.h"
 #include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kOfLines = 1.0 / 200.0;  // share of the significance; every frequency is a try
-// further effects on a rate table: powers and products of the scale factor
-constexpr std::size_t kMoreOnDwells = 4;
 
 // One diagnosis, step by step. Each step removes what it finds from the errors for the next.
 class Run {
@@ -42,7 +31,6 @@ class Run {
       : records_(prepared.fitted),
         lines_of_a_ramp_(prepared.without_ramps.remark),
         options_(options),
-        earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
         data_(cut_to_blocks(prepared.without_ramps.records)),
         errors_(even_errors(records_, data_.grid.sample_s)),
         of_samples_(prepared.without_ramps.ramps) {}
@@ -80,14 +68,9 @@ class Run {
   }
 
   void search() {
-    SearchOptions search;
-    search.significance = options_.significance;
-    search.most_effects = options_.most_effects + (data_.grid.dwells ? kMoreOnDwells : 0);
-    search.progress = options_.progress;
-    if (searched_) search.noise = found_.noise.shape;
-    searched_ = true;
-    found_ = search_effects(reconstructed_, search);
-    read_as_earth_rate(reconstructed_, earth_, found_);
+    const bool again = std::exchange(searched_, true);
+    found_ = search_effects(reconstructed_, options_, again ? &found_.noise.shape : nullptr);
+    read_as_earth_rate(reconstructed_, options_, found_);
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
     for (Chosen& each : found_.chosen)
       if (long_past_s(data_.grid, each.candidate) > 0.0)
@@ -219,16 +202,13 @@ class Run {
   }
 
   void report_effects() {
-    Findings findings = findings_of(data_, found_, joint_, options_.axis);
-    result_.effects = std::move(findings.effects);
-    result_.indistinguishable = std::move(findings.pairs);
+    parts_ = write_findings(data_, found_, joint_, options_.axis, result_);
     result_.noise_posterior = joint_.noise;
     for (const FoundEffect& each : of_samples_) {
       result_.effects.push_back(each);
       result_.effects.back().effect.axis = options_.axis;
     }
     result_.ranges = ranges_of(data_, result_.effects);
-    parts_ = std::move(findings.parts);
   }
 
   void report_figures() {
@@ -240,7 +220,7 @@ class Run {
   void report_rest() {
     result_.unexplained = describe_rest(records_, errors_, of_samples_, found_.noise, data_.grid,
                                         options_.significance, result_.noise_changes);
-    say(earth_rate_in_words(reconstructed_, earth_, found_));
+    say(earth_rate_in_words(options_, reconstructed_, found_));
     say(proxies_in_words(reconstructed_, found_));
     if (!data_.grid.dwells) say(unlike_reference_in_words(records_, errors_, data_.grid.sample_s));
     say(far_zeros_in_words(result_));
@@ -264,7 +244,6 @@ class Run {
   const std::vector<Record>& records_;
   const std::string& lines_of_a_ramp_;  // remark, or empty
   const DiagnoseOptions& options_;
-  const EarthRateOptions earth_;
   BlockData data_;           // without ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;

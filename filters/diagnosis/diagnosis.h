@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Result of a diagnosis, as plain data for all rooms of the diagnosis.
+// Options and result of a diagnosis, as plain data for all rooms of the diagnosis.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +15,22 @@
 #include "filters/rest/noise_change.h"
 
 namespace ifog {
+
+struct DiagnoseOptions {
+  double significance = 0.01;  // probability of a false effect, corrected for the number of tries
+  std::string axis;            // written into the effects found
+  // Part of each record that is fitted, as fractions of its time; the rest is for validation. If that is all
+  // of it, validation is by cross-validation.
+  double fit_from = 0.0, fit_to = 1.0;
+  std::size_t most_effects = 8;
+  bool subtract_earth_rate = false;  // subtract the effect of the Earth's rate; otherwise it is only reported
+  std::optional<double> latitude_rad;  // limits the size of the Earth's rate
+  // Without a reference, channels that sense motion explain nothing unless this is set.
+  bool allow_motion_channels = false;
+  // Coefficients beyond makers' specifications are reported as proxies and not corrected unless this is set.
+  bool allow_proxies = false;
+  std::function<void(std::size_t done, std::size_t total)> progress;
+};
 
 // Noise parameters that the record allows; predictions average over them.
 struct NoisePosterior {

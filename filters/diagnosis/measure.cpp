@@ -11,7 +11,8 @@
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
-#include "filters/diagnosis/report/findings.h"
+#include "filters/diagnosis/report/report.h"
+#include "filters/effects/delayed_reading.h"
 #include "filters/model_file/form.h"
 
 namespace ifog {
@@ -24,27 +25,19 @@ std::string missing(const BlockData& data, const std::string& name) {
   return data.channels[*channel].varies ? "" : name + " does not change in the captures";
 }
 
-struct Named {
-  Candidate candidate;
-  std::string not_measured;
-};
-
-Named candidate_named(const BlockData& data, const Effect& effect) {
-  Named named;
+// Candidate that measures the effect; nullopt if the data cannot, for the reason in `not_measured`.
+std::optional<Candidate> candidate_named(const BlockData& data, const Effect& effect,
+                                         std::string& not_measured) {
   const std::optional<Form> form = form_named(effect.form);
-  if (form && has_channel(*form)) named.not_measured = missing(data, effect.channel);
-  if (form == Form::kProduct && named.not_measured.empty())
-    named.not_measured = missing(data, effect.with_channel);
-  if (!named.not_measured.empty()) return named;
-  const std::optional<Candidate> candidate = candidate_of(data, effect);
-  if (!candidate) {
-    named.not_measured = "'" + effect.form + "' has no single coefficient to measure";
-    return named;
-  }
-  named.candidate = *candidate;
-  if (form == Form::kEarthRate)  // uses the regressor of acceleration
-    named.candidate.first_reading = FirstReading::kEarthRateSubtracted;
-  return named;
+  if (form && has_channel(*form)) not_measured = missing(data, effect.channel);
+  if (form == Form::kProduct && not_measured.empty()) not_measured = missing(data, effect.with_channel);
+  if (!not_measured.empty()) return std::nullopt;
+  std::optional<Candidate> candidate = candidate_of(data, effect);
+  if (!candidate)
+    not_measured = "'" + effect.form + "' has no single coefficient to measure";
+  else if (form == Form::kEarthRate)  // uses the regressor of acceleration
+    candidate->first_reading = FirstReading::kEarthRateSubtracted;
+  return candidate;
 }
 
 // The model does not name the capture of a step, so one candidate for each capture that may contain it.
@@ -62,33 +55,19 @@ std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) 
   return found;
 }
 
-// The channel as it is known `delay_s` later: linear between fine steps, constant at the begin of a record.
-void delay(const BlockGrid& grid, double delay_s, FineChannel& channel) {
-  const double steps = delay_s / grid.fine_s, whole = std::ceil(steps), share = whole - steps;
-  const auto moved = [&](std::vector<double>& values) {
-    const std::vector<double> before = values;
-    for (const BlockRange& record : grid.records) {
-      const BlockRange fine = grid.fine_steps(record);
-      const auto at = [&](double k) {
-        return before[std::max(fine.first, static_cast<std::size_t>(std::max(k, 0.0)))];
-      };
-      for (std::size_t k = fine.first; k < fine.end && !before.empty(); ++k) {
-        const double from = static_cast<double>(k) - whole;
-        values[k] = (1.0 - share) * at(from) + share * at(from + 1.0);
-      }
-    }
-  };
-  moved(channel.values);
-  moved(channel.power);
-}
-
-// Delays early channels as the daemon does by waiting.
+// Delays early channels by the daemon's code.
 void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
   bool any = false;
   for (const ChannelRange& range : ranges) {
     const std::optional<std::size_t> channel = data.index_of(range.channel);
     if (!(range.early_s > 0.0) || !channel) continue;
-    delay(data.grid, range.early_s, data.channels[*channel]);
+    for (std::vector<double>* values : {&data.channels[*channel].values, &data.channels[*channel].power})
+      for (const BlockRange& record : data.grid.records) {
+        const BlockRange fine = data.grid.fine_steps(record);
+        DelayedReading delayed(range.early_s);
+        for (std::size_t k = fine.first; k < fine.end && !values->empty(); ++k)
+          (*values)[k] = delayed.step((*values)[k], data.grid.fine_s);
+      }
     any = true;
   }
   if (any) rebuild_differences(data);
@@ -112,15 +91,14 @@ class Measuring {
 
  private:
   void take(std::size_t i) {
-    const Named named = candidate_named(data_, wanted_.together[i]);
     MeasuredEffect& measured = result_.together[i];
     measured.effect = wanted_.together[i];
-    measured.not_measured = named.not_measured;
-    if (!named.not_measured.empty()) return;
-    if (has_shape(model_, named.candidate))
+    const auto candidate = candidate_named(data_, measured.effect, measured.not_measured);
+    if (!candidate) return;
+    if (has_shape(model_, *candidate))
       throw std::invalid_argument("'" + wanted_.together[i].form + "' is to be measured twice");
     place_.push_back(i);
-    model_.push_back(named.candidate);
+    model_.push_back(*candidate);
   }
 
   void take_other(const Effect& effect) {
@@ -128,8 +106,9 @@ class Measuring {
       for (const Candidate& step : steps_named(data_, effect)) steps_.push_back(step);
       return;
     }
-    const Named named = candidate_named(data_, effect);
-    if (named.not_measured.empty() && !has_shape(model_, named.candidate)) model_.push_back(named.candidate);
+    std::string unused;
+    const auto candidate = candidate_named(data_, effect, unused);
+    if (candidate && !has_shape(model_, *candidate)) model_.push_back(*candidate);
   }
 
   // Likelihood loss without effect `at`, and gain of each alternative.
@@ -142,10 +121,11 @@ class Measuring {
     if (wanted_.instead.empty()) return;
     for (const Effect& effect : wanted_.instead[place_[at]]) {
       measured.instead.push_back(0.0);
-      const Named other = candidate_named(data_, effect);
-      if (!other.not_measured.empty()) continue;
+      std::string unused;
+      const auto other = candidate_named(data_, effect, unused);
+      if (!other) continue;
       std::vector<Candidate> trial = rest;
-      trial.push_back(other.candidate);
+      trial.push_back(*other);
       const NoiseFit noise = fit_noise(data_.grid, design(data_, trial), noise_.shape);
       measured.instead.back() = 2.0 * (noise.log_likelihood - without.log_likelihood);
     }

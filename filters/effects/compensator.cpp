@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "filters/effects/arc.h"
+#include "filters/effects/reach.h"
 
 namespace ifog {
 namespace {
@@ -17,9 +17,7 @@ constexpr double kSmall = 1e-4;
 
 }  // namespace
 
-Compensator::ChannelSet Compensator::hold_channels(const CompensatorInput& in,
-                                                   CompensatorOutput& out) noexcept {
-  ChannelSet moved = kAlways;
+void Compensator::hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   for (std::size_t i = 0; i < held_.size(); ++i) {
     Held& held = held_[i];
     double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
@@ -30,19 +28,15 @@ Compensator::ChannelSet Compensator::hold_channels(const CompensatorInput& in,
       value = known ? delayed.step(value, in.dt_s) : delayed.hold(in.dt_s);
       known = true;
     }
-    // Compares bits, since zero has two signs.
-    if (known &&
-        (!held.seen || std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(held.value))) {
+    if (known) {
       held.seen = true;
       held.value = value;
       held.reach = reach_of(value, ranges_[i]);
-      moved |= set_of(i);
     }
     if (held.stale) out.flags |= kStaleChannel;
     if (!held.seen) out.flags |= kNoChannelYet;
     if (held.seen && held.reach.outside()) out.flags |= kOutOfRange;
   }
-  return moved;
 }
 
 void Compensator::Value::doubt(double factor, const Shape& shape, const Reach& reach) noexcept {
@@ -74,33 +68,24 @@ std::optional<Reach> Compensator::reach_of_factor(Factor& factor, double dt_s,
   return reach;
 }
 
-void Compensator::evaluate(Term& term, double dt_s) noexcept {
+void Compensator::evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept {
   term.channels = {};
   term.usable = true;
-  term.flags = 0;
   for (Factor& factor : term.factors) {
     if (factor.rate != kNone) continue;
     if (factor.channel == kNone) {
       const double value = factor.shape.step(0.0, dt_s);
       const bool ramp = factor.shape.settings().form == Form::kRateRamp;
       const Reach reach = ramp ? reach_of(value, factor.range) : Reach{};
-      if (reach.outside()) term.flags |= kOutOfRange;
+      if (reach.outside()) flags |= kOutOfRange;
       term.channels.times(ramp ? reach.value : value, factor.shape, reach);
       continue;
     }
-    const std::optional<Reach> reach = reach_of_factor(factor, dt_s, term.flags);
+    const std::optional<Reach> reach = reach_of_factor(factor, dt_s, flags);
     term.usable = reach.has_value();
     if (!term.usable) return;
     term.channels.times(factor.shape.step(*reach, dt_s), factor.shape, *reach);
   }
-}
-
-void Compensator::look_at(Term& term, double dt_s) noexcept {
-  evaluate(term, dt_s);
-  const bool doubtful = term.usable && !term.channels.surely();
-  if (doubtful == term.doubtful) return;
-  term.doubtful = doubtful;
-  of_axis_[term.axis].doubtful += doubtful ? 1 : -1;
 }
 
 Compensator::Value Compensator::at_rates(const Term& term, const Axes& rates) const noexcept {
@@ -163,11 +148,10 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
     inflation += left * left + bent * bent;
   }
   // Uniform distribution within the zone.
-  if (of_axis_[axis].of_zone)
-    for (const Zone& zone : zones_)
-      if (zone.axis == axis && std::abs(rates[axis] - zone.middle) < zone.half_width)
-        inflation += zone.half_width * zone.half_width / 3.0;
-  of_axis_[axis].variance = parameter_variance(axis) + inflation;
+  for (const Zone& zone : zones_)
+    if (zone.axis == axis && std::abs(rates[axis] - zone.middle) < zone.half_width)
+      inflation += zone.half_width * zone.half_width / 3.0;
+  out.variance_rad2ps2[axis] = parameter_variance(axis) + inflation;
 }
 
 // One step of Newton's method from rate `at`, exact for a constant scale factor error of any size, also for one
@@ -181,50 +165,37 @@ double Compensator::better_rate(std::size_t axis, double measured, double at, Ax
   return (measured - here + slope * at) / (1.0 + slope);
 }
 
-// Only what depends on changed channels or on a rate is computed.
-void Compensator::solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept {
+void Compensator::solve(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   Axes rates = in.rate_radps;
   bool of_rate = false;
   for (std::size_t axis = 0; axis < axes_; ++axis) {
-    AxisTerms& of = of_axis_[axis];
-    of_rate |= of.of_rate;
-    if (!of.of_rate && (of.needs & moved) != 0) of.correction = correction(axis, rates);
-    if (!of.of_rate) rates[axis] = in.rate_radps[axis] - of.correction;
+    of_rate |= of_axis_[axis].of_rate;
+    if (of_axis_[axis].of_rate) continue;
+    out.correction_radps[axis] = correction(axis, rates);
+    rates[axis] = in.rate_radps[axis] - out.correction_radps[axis];
   }
   // The iteration stops when the rates no longer change. It starts at zero, which is within the fitted range.
   for (int round = 0; of_rate && round < kRounds; ++round) {
     of_rate = false;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
-      AxisTerms& of = of_axis_[axis];
-      if (!of.of_rate) continue;
+      if (!of_axis_[axis].of_rate) continue;
       const double rate = better_rate(axis, in.rate_radps[axis], round == 0 ? 0.0 : rates[axis], rates);
-      of.correction = in.rate_radps[axis] - rate;
+      out.correction_radps[axis] = in.rate_radps[axis] - rate;
       of_rate |= std::bit_cast<std::uint64_t>(rate) != std::bit_cast<std::uint64_t>(rates[axis]);
       rates[axis] = rate;
     }
   }
   for (std::size_t axis = 0; axis < axes_; ++axis) {
-    AxisTerms& of = of_axis_[axis];
-    out.correction_radps[axis] = of.correction;
     out.compensated_radps[axis] = rates[axis];
-    if (of.of_rate || of.of_zone || of.doubtful > 0 || !covariance_.values.empty()) {
-      if (of.of_rate || of.of_zone || (of.needs & moved) != 0) judge(axis, rates, out);
-    } else {
-      of.variance = 0.0;
-    }
-    out.variance_rad2ps2[axis] = of.variance;
+    judge(axis, rates, out);
   }
 }
 
 void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   out.flags = 0;
-  const ChannelSet moved = hold_channels(in, out);
-  const bool first = !std::exchange(begun_, true);
-  for (Term& term : terms_) {
-    if (first || (term.needs & moved) != 0) look_at(term, in.dt_s);
-    out.flags |= term.flags;
-  }
-  solve(in, first ? ~ChannelSet{0} : moved, out);
+  hold_channels(in, out);
+  for (Term& term : terms_) evaluate(term, in.dt_s, out.flags);
+  solve(in, out);
   subtract_ramps(in, out);
 }
 

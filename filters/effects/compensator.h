@@ -75,13 +75,6 @@ class Compensator {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  // Bit set of channels for a quick test of changes. Beyond 63 channels share bits, which only causes
-  // additional evaluations.
-  using ChannelSet = std::uint64_t;
-  static constexpr ChannelSet kAlways = ChannelSet{1} << 63U;
-  [[nodiscard]] static ChannelSet set_of(std::size_t channel) noexcept {
-    return ChannelSet{1} << channel % 63;
-  }
 
   struct Factor {
     std::size_t channel = kNone;  // kNone: a rate, or time
@@ -111,22 +104,13 @@ class Compensator {
     bool of_rate;           // of any axis
     std::size_t parameter;  // row of the coefficient in the covariance, or kNone
     std::vector<Factor> factors;
-    // Sum of the factors that do not depend on the rate, and their flags; valid until one of these channels
-    // changes.
-    Value channels{};
-    std::uint32_t flags = 0;
-    bool usable = false, doubtful = false;  // doubtful: outside the range of a channel
-    ChannelSet needs = 0;
+    Value channels{};  // product of the factors that do not depend on the rate, of this step
+    bool usable = false;
   };
   // Terms of one axis, in the order of the model.
   struct AxisTerms {
     std::size_t begin = 0, end = 0;
-    ChannelSet needs = 0;     // of all terms
-    bool of_rate = false;     // its correction depends on a rate
-    bool of_zone = false;     // its variance does
-    int doubtful = 0;         // number of such terms
-    double correction = 0.0;  // at the last step
-    double variance = 0.0;
+    bool of_rate = false;  // its correction depends on a rate
   };
   struct Ramp {
     std::size_t axis;
@@ -150,13 +134,10 @@ class Compensator {
   void add_zone(const Effect& effect, const std::vector<std::string>& axes);
   void add_factor(Term& term, ShapeSettings settings, const std::string& channel,
                   const std::vector<std::string>& axes, const std::vector<ChannelRange>& ranges);
-  void place(const Term& term, const Effect& effect, const std::vector<std::string>& axes);
   void arrange_terms();
-  // Updates held_ and returns the channels whose value has changed.
-  ChannelSet hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  void evaluate(Term& term, double dt_s) noexcept;
-  void look_at(Term& term, double dt_s) noexcept;
-  void solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept;
+  void hold_channels(const CompensatorInput& in, CompensatorOutput& out) noexcept;
+  void evaluate(Term& term, double dt_s, std::uint32_t& flags) noexcept;
+  void solve(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   // Reach of a factor's channel; nullopt if it has had no value.
   [[nodiscard]] std::optional<Reach> reach_of_factor(Factor& factor, double dt_s,
@@ -185,7 +166,6 @@ class Compensator {
   std::size_t axes_;
   std::array<AxisTerms, kMaxAxes> of_axis_{};
   std::vector<double> values_;  // of terms_, for judge()
-  bool begun_ = false;          // false: held_ was taken over, so all terms must be evaluated
   double stale_after_s_;
   std::optional<double> since_power_up_s_;
 };

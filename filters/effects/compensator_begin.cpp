@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/effects/arc.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/meaning.h"
+#include "filters/effects/reach.h"
 #include "filters/model_file/channel_names.h"
 
 namespace ifog {
@@ -44,8 +44,17 @@ std::string place_of(const Effect& effect) {
   return "effect " + name_of(effect) + (effect.line > 0 ? " in line " + std::to_string(effect.line) : "");
 }
 
-[[noreturn]] void refuse_axis(const Effect& effect) {
-  throw std::invalid_argument(place_of(effect) + ": the sensor has no axis " + in_quotes(effect.axis));
+// Calls use(axis) for each axis that the effect is of.
+template <class Use>
+void each_axis_of(const Effect& effect, const std::vector<std::string>& axes, const Use& use) {
+  bool any = effect.axis.empty();
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+    use(axis);
+    any = true;
+  }
+  if (!any)
+    throw std::invalid_argument(place_of(effect) + ": the sensor has no axis " + in_quotes(effect.axis));
 }
 
 }  // namespace
@@ -79,13 +88,9 @@ void Compensator::arrange_terms() {
   for (std::size_t axis = 0, next = 0; axis < axes_; ++axis) {
     AxisTerms& of = of_axis_[axis];
     of.begin = next;
-    while (next < terms_.size() && terms_[next].axis == axis) {
-      of.needs |= terms_[next].needs;
-      of.of_rate |= terms_[next++].of_rate;
-    }
+    while (next < terms_.size() && terms_[next].axis == axis) of.of_rate |= terms_[next++].of_rate;
     of.end = next;
   }
-  for (const Zone& zone : zones_) of_axis_[zone.axis].of_zone = true;
 }
 
 void Compensator::add_effect(const Effect& effect, std::size_t first_row,
@@ -128,22 +133,22 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(place_of(effect) + ": " + error.what());
   }
-  place(term, effect, axes);
+  each_axis_of(effect, axes, [&](std::size_t axis) {
+    Term& mine = terms_.emplace_back(term);
+    mine.axis = axis;
+    for (Factor& factor : mine.factors)
+      if (factor.rate == kOwn) factor.rate = axis;
+  });
 }
 
 void Compensator::add_ramp(const Effect& effect, const std::vector<std::string>& axes) {
-  bool placed = false;
+  std::optional<RampTracker> tracker;
   try {
-    const RampTracker tracker(ramp_settings(effect));
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
-      ramps_.push_back({axis, tracker});
-      placed = true;
-    }
+    tracker.emplace(ramp_settings(effect));
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(place_of(effect) + ": " + error.what());
   }
-  if (!placed) refuse_axis(effect);
+  each_axis_of(effect, axes, [&](std::size_t axis) { ramps_.push_back({axis, *tracker}); });
 }
 
 void Compensator::add_zone(const Effect& effect, const std::vector<std::string>& axes) {
@@ -151,13 +156,9 @@ void Compensator::add_zone(const Effect& effect, const std::vector<std::string>&
   if (!is_reference_rate(effect.channel) || !(half_width >= 0.0 && std::isfinite(half_width)))
     throw std::invalid_argument(place_of(effect) +
                                 ": expected reference_rate and a half_width of at least 0");
-  bool placed = false;
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
+  each_axis_of(effect, axes, [&](std::size_t axis) {
     zones_.push_back({axis, effect.reference, half_width});
-    placed = true;
-  }
-  if (!placed) refuse_axis(effect);
+  });
 }
 
 void Compensator::add_factor(Term& term, ShapeSettings settings, const std::string& channel,
@@ -187,26 +188,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
       factor.turn = turn_of(channel, factor.shape.settings().period);
   }
   term.of_rate |= rate;
-  // Evaluated at each step, since it depends on time or tests each difference.
-  if (!rate) {
-    const bool of_value = factor.channel != kNone && factor.less == kNone && !factor.shape.has_state();
-    term.needs |= of_value ? set_of(factor.channel) : kAlways;
-  }
   term.factors.push_back(std::move(factor));
-}
-
-void Compensator::place(const Term& term, const Effect& effect, const std::vector<std::string>& axes) {
-  bool placed = false;
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    if (!effect.axis.empty() && effect.axis != axes[axis]) continue;
-    Term mine = term;
-    mine.axis = axis;
-    for (Factor& factor : mine.factors)
-      if (factor.rate == kOwn) factor.rate = axis;
-    terms_.push_back(std::move(mine));
-    placed = true;
-  }
-  if (!placed) refuse_axis(effect);
 }
 
 std::size_t Compensator::channel_index(const std::string& name) {
@@ -222,7 +204,6 @@ void Compensator::begin(double since_power_up_s) noexcept {
 }
 
 void Compensator::take_over(const Compensator& previous) noexcept {
-  begun_ = false;
   for (Ramp& ramp : ramps_) {
     for (const Ramp& other : previous.ramps_)
       if (ramp.axis == other.axis && ramp.tracker.take_over(other.tracker)) break;

@@ -2,16 +2,25 @@
 // Extrapolation of a model outside its fitted range.
 //
 // Polynomial forms are extrapolated over one more width of the range: linear ones as they are, higher powers
-// by their tangent (curve_reach.h). Beyond that, and for lookup tables, the value at the edge is held.
-// Effects of channels that sense motion fade out instead, because a fit at rest is not valid in motion.
+// by their tangent (kCurveReach). Beyond that, and for lookup tables, the value at the edge is held.
+// Effects of channels that sense motion fade out instead, because a fit at rest is not valid in motion. A periodic
+// effect of an angle of which the fit saw only a part of the circle is extrapolated within that arc, modulo the turn;
+// elsewhere it keeps its value at the nearer end.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
+#include "filters/effects/meaning.h"
 #include "filters/model_file/model.h"
 
 namespace ifog {
+
+// Powers above one are extrapolated by their tangent, or by the power itself if its curvature is well known. This
+// parameter of the effect gives how far, in the channel's unit of that power; then the tangent continues.
+inline constexpr std::string_view kCurveReach = "curve_reach";
 
 struct Reach {
   double edge = 0.0;    // the value limited to the range
@@ -35,6 +44,20 @@ struct Reach {
   if (range.fades && value != reach.edge)
     reach.weight = more > 0.0 ? std::max(0.0, 1.0 - std::abs(value - reach.edge) / more) : 0.0;
   return reach;
+}
+
+// Modulus of the channel's wraps; the period of a harmonic is a fraction of it.
+[[nodiscard]] inline double turn_of(const std::string& channel, double period) {
+  const double turn = turn_by_unit(channel), times = turn / period;
+  return std::abs(times - std::round(times)) < 1e-6 * times ? turn : period;
+}
+
+// Adds whole turns so that the angle is nearest to the middle of the arc. Without limits the arc is the whole
+// circle.
+[[nodiscard]] inline double nearest_on_arc(double angle, const ChannelRange& arc, double turn) noexcept {
+  if (!(turn > 0.0) || !std::isfinite(arc.high - arc.low)) return angle;
+  const double middle = 0.5 * (arc.low + arc.high);
+  return angle - turn * std::round((angle - middle) / turn);
 }
 
 }  // namespace ifog

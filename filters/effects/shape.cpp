@@ -7,9 +7,8 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/effects/arc.h"
-#include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
+#include "filters/effects/reach.h"
 
 namespace ifog {
 namespace {

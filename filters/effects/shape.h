@@ -68,8 +68,6 @@ class Shape {
   [[nodiscard]] double unseen_curvature(const Reach& channel) const noexcept;
 
   [[nodiscard]] const ShapeSettings& settings() const noexcept { return settings_; }
-  // True if a step depends on the channel's past or on time.
-  [[nodiscard]] bool has_state() const noexcept { return has_state_; }
   // Continues the state of another compensator's shape; false if the shape differs.
   bool take_over(const Shape& previous) noexcept;
 
@@ -81,7 +79,8 @@ class Shape {
   // Members read by step(), adjacent.
   double first_ = 0.0, second_ = 0.0, elapsed_ = 0.0, dt_ = 0.0, alpha_ = 1.0, beta_ = 1.0;
   bool started_ = false;
-  bool has_state_ = false, bounded_ = false;
+  bool has_state_ = false;  // a step depends on the channel's past or on time
+  bool bounded_ = false;
   int power_ = 0;  // power_of() the form
   ShapeSettings settings_;
 };

@@ -11,7 +11,7 @@ using Values = ParameterRule::Values;
 constexpr ParameterRule kCoefficient{"coefficient", true, Values::kAny};
 // 0: not smoothed.
 constexpr ParameterRule kBandwidth{"bandwidth_s", true, Values::kNotNegative};
-// Extrapolation range of a power before its tangent is used (filters/effects/curve_reach.h).
+// Extrapolation range of a power before its tangent is used (filters/effects/reach.h).
 constexpr ParameterRule kCurve{"curve_reach", false, Values::kNotNegative};
 constexpr ParameterRule kRmsOfTable{"angle_rms", false, Values::kNotNegative};
 

@@ -90,14 +90,6 @@ double angle_period(const std::string& channel, std::span<const double> values) 
   return all_round && wraps > 0 && clear ? period : 0.0;
 }
 
-bool of_one_vector(const std::string& one, const std::string& other) {
-  if (one.size() != other.size()) return false;
-  const auto [a, b] = std::mismatch(one.begin(), one.end(), other.begin());
-  const auto axis = [](char c) { return c >= 'x' && c <= 'z'; };
-  return a != one.end() && axis(*a) && axis(*b) && (a == one.begin() || *(a - 1) == '_') &&
-         a + 1 != one.end() && *(a + 1) == '_' && std::equal(a + 1, one.end(), b + 1);
-}
-
 OwnedRecords with_unwrapped_angles(OwnedRecords given) {
   std::map<std::string, double> periods;
   for (const Record& record : given.records)

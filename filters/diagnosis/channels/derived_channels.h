@@ -15,9 +15,6 @@ namespace ifog {
 // turn and wrap by a whole one; else 0.
 double angle_period(const std::string& channel, std::span<const double> values);
 
-// True for components of one vector, names that differ only in the axis: "magnetic_x_uT" and "magnetic_y_uT".
-bool of_one_vector(const std::string& one, const std::string& other);
-
 // Unwraps angles in every record and sets RecordChannel::period.
 OwnedRecords with_unwrapped_angles(OwnedRecords given);
 

@@ -16,7 +16,7 @@ inline constexpr double kStandardGravity = 9.80665;  // m/s^2
 
 // Marks channels that sense motion (FineChannel::moves) if there is no reference rate. Returns sentences
 // about what they would explain as rotation. An acceleration that is constant for half a minute at a time is
-// left to the search, which limits its size (search/plausible.h). allowed: nothing is marked.
+// left to the search, which limits its size (search/first_reading.h). allowed: nothing is marked.
 std::vector<std::string> mark_motion(const std::vector<Record>& records, BlockData& data, bool allowed);
 
 }  // namespace ifog

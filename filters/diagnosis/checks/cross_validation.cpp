@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/checks/cross_validation.h"
+#include "filters/diagnosis/checks/checks.h"
 
 #include <algorithm>
 #include <array>
@@ -17,8 +17,16 @@ constexpr int kDwellFolds = 10;
 
 int fold_count(const BlockGrid& grid) { return grid.dwells ? kDwellFolds : kFolds; }
 
+// Fold of each block: contiguous pieces, of a time series four short ones for each fold, alternating, so that every fold
+// covers the whole record.
 std::vector<int> fold_of_block(const BlockGrid& grid) {
-  return grid.dwells ? folds_of(grid, kDwellFolds, 1) : folds_of(grid, kFolds);
+  const auto folds = static_cast<std::size_t>(fold_count(grid));
+  const std::size_t pieces = (grid.dwells ? 1 : 4) * folds;
+  std::vector<int> fold(grid.size());
+  for (const BlockRange& record : grid.records)
+    for (std::size_t b = 0; b < record.size(); ++b)
+      fold[record.first + b] = static_cast<int>(b * pieces / record.size() % folds);
+  return fold;
 }
 
 // Least squares on the residual of the regressors without one fold.
@@ -36,10 +44,10 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
   return scale.asDiagonal() * shortest_coefficients(scaled, white.col(0));
 }
 
-}  // namespace
-
+// For each held-out part, fitted on the other parts. Zero for an effect that happened only in the held-out part.
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
-                                                            const Columns& columns) {
+                                                            const Columns& columns,
+                                                            const std::vector<int>& fold) {
   // Whitened on all blocks, then fitted on the other folds' rows: a fold is excluded from the fit but not
   // from the filter, which would restart after every gap. The constants are projected out on all blocks.
   Columns white = columns;
@@ -48,20 +56,20 @@ std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& gri
   Columns others(white.rows(), white.cols() - k);
   others << white.col(0), white.rightCols(white.cols() - 1 - k);
   Projection(white.middleCols(1, k)).take_out_of(others);
-  const std::vector<int> fold = fold_of_block(grid);
   std::vector<Eigen::VectorXd> coefficients;
-  coefficients.reserve(static_cast<std::size_t>(fold_count(grid)));
   for (int f = 0; f < fold_count(grid); ++f) coefficients.push_back(without_fold(others, fold, f));
   return coefficients;
 }
+
+}  // namespace
 
 Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candidate>& effects,
                                 const NoiseShape& shape, const Eigen::VectorXd& coefficients) {
   const BlockGrid& grid = data.grid;
   const Columns columns = design(data, effects);
   const Eigen::Index p = columns.cols() - 1 - grid.constants();
-  const std::vector<Eigen::VectorXd> others = coefficients_without_each_fold(grid, shape, columns);
   const std::vector<int> fold = fold_of_block(grid);
+  const std::vector<Eigen::VectorXd> others = coefficients_without_each_fold(grid, shape, columns, fold);
   Columns centred = columns.rightCols(p);
   centre_records(grid, centred);
   for (std::size_t i = 0; i < effects.size(); ++i)
@@ -96,9 +104,9 @@ bool predicts_held_out(const BlockData& data, const FittedModel& model) {
   Eigen::VectorXd x = white.col(last);
   others.take_out_of(y);
   others.take_out_of(x);
-  const std::vector<int> fold = folds_of(data.grid, kFolds);
-  std::array<double, kFolds> xy{};
-  std::array<double, kFolds> xx{};
+  const std::vector<int> fold = fold_of_block(data.grid);
+  const auto folds = static_cast<std::size_t>(fold_count(data.grid));
+  std::vector<double> xy(folds, 0.0), xx(folds, 0.0);
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     const auto f = static_cast<std::size_t>(fold[static_cast<std::size_t>(i)]);
     xy[f] += x[i] * y[i];
@@ -107,7 +115,7 @@ bool predicts_held_out(const BlockData& data, const FittedModel& model) {
   const double all_xy = std::accumulate(xy.begin(), xy.end(), 0.0);
   const double all_xx = std::accumulate(xx.begin(), xx.end(), 0.0);
   double gain = 0.0, scatter = 0.0;
-  for (std::size_t f = 0; f < kFolds; ++f) {
+  for (std::size_t f = 0; f < folds; ++f) {
     if (xx[f] > 0.0) scatter += std::pow(xy[f] - all_xy / all_xx * xx[f], 2) / xx[f];
     if (all_xx - xx[f] <= 0.0) continue;
     const double c = (all_xy - xy[f]) / (all_xx - xx[f]);
@@ -143,13 +151,11 @@ bool step_persists(const BlockData& data, const FittedModel& model) {
     if (grid.time_s[b] > step.time_s) look_at(b);
   if (level[0].size() < 8 || level[1].size() < 8) return false;
   const auto change = [&](bool far) {
-    std::array<double, 2> mean{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      const auto from = level[side].begin() + static_cast<std::ptrdiff_t>(far ? level[side].size() / 2 : 0);
-      mean[side] =
-          std::accumulate(from, level[side].end(), 0.0) / static_cast<double>(level[side].end() - from);
-    }
-    return (mean[1] - mean[0]) / c[last - 1];
+    const auto mean = [&](const std::vector<double>& side) {
+      const auto from = side.begin() + static_cast<std::ptrdiff_t>(far ? side.size() / 2 : 0);
+      return std::accumulate(from, side.end(), 0.0) / static_cast<double>(side.end() - from);
+    };
+    return (mean(level[1]) - mean(level[0])) / c[last - 1];
   };
   return change(false) > kLasting && change(true) > kLastingFar;
 }

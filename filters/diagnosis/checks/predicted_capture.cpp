@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/checks/predicted_capture.h"
+#include "filters/diagnosis/checks/checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,51 +20,40 @@ constexpr double kMoves = 1e-6;        // smallest square of the regressors in t
 constexpr double kAsMuch = 0.25;       // smallest square of the regressors here, relative to all others
 constexpr double kUnseen = 9.0;        // twice the log-likelihood gained by the common law
 
-struct Split {
-  Columns columns;         // measurement, other effects, the group in other records, the group in this one
-  Eigen::Index group = 0;  // number of the group's columns
-};
-
-Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
-               const std::vector<std::size_t>& group, std::size_t record) {
-  const Columns joint = design(data, effects);
-  std::vector<Eigen::Index> mine;
-  mine.reserve(group.size());
-  for (const std::size_t i : group) mine.push_back(column_of(data.grid, i));
-  const auto g = static_cast<Eigen::Index>(mine.size());
-  Split split{Columns::Zero(joint.rows(), joint.cols() + g), g};
-  Eigen::Index at = 0;
-  for (Eigen::Index j = 0; j < joint.cols(); ++j)
-    if (std::find(mine.begin(), mine.end(), j) == mine.end()) split.columns.col(at++) = joint.col(j);
-  const BlockRange& here = data.grid.records[record];
-  for (Eigen::Index k = 0; k < g; ++k) {
-    const auto column = joint.col(mine[static_cast<std::size_t>(k)]);
-    split.columns.col(at + k) = column;
-    split.columns.col(at + k).segment(here.row(), here.rows()).setZero();
-    split.columns.col(at + g + k).segment(here.row(), here.rows()) = column.segment(here.row(), here.rows());
-  }
-  return split;
-}
-
-// Whitened and with all other effects projected out.
+// The error and the group's columns in the other records and in this one, whitened and with all other effects
+// projected out.
 struct Whitened {
   Eigen::VectorXd error;
-  Eigen::MatrixXd others, here;  // the group's columns
-  double variance = 0.0;         // of an innovation
+  Eigen::MatrixXd others, here;
+  double variance = 0.0;  // of an innovation
 };
 
-Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noise) {
+Whitened whitened(const BlockData& data, const std::vector<Candidate>& effects,
+                  const std::vector<std::size_t>& group, std::size_t record, const NoiseFit& noise) {
+  const BlockRange& here = data.grid.records[record];
+  const Columns joint = design(data, effects);
+  const auto g = static_cast<Eigen::Index>(group.size());
+  Columns columns = Columns::Zero(joint.rows(), joint.cols() + g);
+  Eigen::Index other = 0, mine = joint.cols() - g;
+  for (Eigen::Index j = 0; j < joint.cols(); ++j) {
+    if (std::ranges::none_of(group, [&](std::size_t i) { return column_of(data.grid, i) == j; })) {
+      columns.col(other++) = joint.col(j);
+      continue;
+    }
+    columns.col(mine) = joint.col(j);
+    columns.col(mine).segment(here.row(), here.rows()).setZero();
+    columns.col(mine++ + g).segment(here.row(), here.rows()) = joint.col(j).segment(here.row(), here.rows());
+  }
   // Noise that was fitted with common coefficients has absorbed the differences between captures.
-  Columns white = split.columns;
-  Whitening(grid, fit_noise(grid, split.columns, noise.shape).shape).apply(white);
-  const Eigen::Index g = split.group;
+  Columns white = columns;
+  Whitening(data.grid, fit_noise(data.grid, columns, noise.shape).shape).apply(white);
   const Eigen::Index p = white.cols() - 1;
   Columns kept(white.rows(), 1 + 2 * g);
   kept << white.col(0), white.rightCols(2 * g);
   Projection(white.middleCols(1, p - 2 * g)).take_out_of(kept);
   const double left = left_by(Columns(kept.rightCols(2 * g)), kept.col(0)).squaredNorm();
   return {kept.col(0), kept.middleCols(1, g), kept.rightCols(g),
-          left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p))};
+          left / std::max(1.0, static_cast<double>(data.grid.used()) - static_cast<double>(p))};
 }
 
 // Compares the prediction by the other records' coefficients with this record.
@@ -133,7 +122,7 @@ std::optional<DeniedEffects> denied_by_a_capture(const BlockData& data, const st
     const std::vector<std::size_t> group = one_law(effects, i);
     if (group.empty() || group.front() != i) continue;
     for (std::size_t r = 0; r < records; ++r) {
-      const Whitened of = whitened(data.grid, split_at(data, effects, group, r), noise);
+      const Whitened of = whitened(data, effects, group, r, noise);
       DeniedEffects found{group, r, 0.0, 0.0};
       if (prediction_fails(of, found) || unseen_though_moved(of, found)) return found;
     }

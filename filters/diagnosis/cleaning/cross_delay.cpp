@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "filters/diagnosis/record/even_grid.h"
 #include "filters/linear/fourier.h"
 
 namespace ifog {
@@ -40,26 +41,12 @@ std::array<double, 4> cubic(double fraction) {
           (f + 1) * f * (f - 1) / 6};
 }
 
-// Missing values interpolated linearly in gaps of up to `most` samples.
-std::vector<double> bridged(std::span<const double> values, std::size_t most) {
-  std::vector<double> out(values.begin(), values.end());
-  std::size_t last = out.size();  // finite value
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (!std::isfinite(out[i])) continue;
-    if (last < i && i - last <= most + 1)
-      for (std::size_t k = last + 1; k < i; ++k)
-        out[k] =
-            out[last] + (out[i] - out[last]) * static_cast<double>(k - last) / static_cast<double>(i - last);
-    last = i;
-  }
-  return out;
-}
-
 using SegmentSpectrum = std::vector<Complex>;
 
 // Spectra of overlapping segments under a Hann taper, without their straight line; empty where a gap is too long.
 std::vector<SegmentSpectrum> segment_spectra(std::span<const double> series, std::size_t length) {
-  const std::vector<double> values = bridged(series, length / 16);
+  std::vector<double> values(series.begin(), series.end());
+  bridge(values, length / 16);
   const double middle = 0.5 * (static_cast<double>(length) - 1.0);
   const double squares = static_cast<double>(length) * (static_cast<double>(length * length) - 1.0) / 12.0;
   std::vector<SegmentSpectrum> spectra;

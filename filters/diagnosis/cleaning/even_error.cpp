@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filters/series/finite_sum.h"
+
 namespace ifog {
 
 std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s) {
@@ -37,20 +39,6 @@ void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid,
   for (std::size_t b = 0; b < blocks.size(); ++b)
     if (grid.valid[blocks.first + b] && sums[b].count > 0.0)
       grid.error[blocks.row() + static_cast<Eigen::Index>(b)] -= sums[b].sum / sums[b].count;
-}
-
-FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series) {
-  FiniteSum all;
-  for (const EvenError& error : errors) {
-    const FiniteSum mine = finite_sum(*(error.*series));
-    all.sum += mine.sum;
-    all.count += mine.count;
-  }
-  return all;
-}
-
-const EvenError& longest_of(const std::vector<EvenError>& errors) {
-  return *std::ranges::max_element(errors, {}, [](const EvenError& error) { return error.before->size(); });
 }
 
 void refuse_constant(const std::vector<Record>& records) {

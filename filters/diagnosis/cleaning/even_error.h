@@ -7,7 +7,6 @@
 
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/series/finite_sum.h"
 #include "filters/series/samples.h"
 
 namespace ifog {
@@ -30,12 +29,6 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, double sa
 
 // Subtracts a part, given by sample, from the record's residual and from its block means in the grid.
 void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error);
-
-// Sum of one series over all records.
-FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series);
-
-// Error of the record with the most steps; needs at least one record.
-const EvenError& longest_of(const std::vector<EvenError>& errors);
 
 // Throws std::invalid_argument if the error is constant over every record: stuck device or placeholder.
 void refuse_constant(const std::vector<Record>& records);

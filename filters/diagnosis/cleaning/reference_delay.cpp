@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/cleaning/reference_delay.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <algorithm>
 #include <array>

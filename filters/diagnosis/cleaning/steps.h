@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of the preparation, each in its own file; prepared_records.h gives their order.
+// Steps of the preparation; PreparedRecords gives their order.
 #pragma once
 
 #include "filters/diagnosis/record/owned_records.h"
@@ -21,6 +21,11 @@ OwnedRecords with_readings_alone(OwnedRecords given);
 // time are faults, so a lasting step is none. They are interpolated if shorter than a minute, else missing.
 // Channels of few values (switches) and missing values are unchanged.
 OwnedRecords repair_channels(OwnedRecords given);
+
+// Shifts the references of all axes by their common delay (cross_delay.h) if it is within ±60 s and certainly not zero: the
+// difference would contain the change of the true rate over the delay, which in turns may be the largest part of the
+// record. Unchanged: records without a reference or a moving one, with an uneven clock, and tables of dwells.
+OwnedRecords align_references(OwnedRecords given);
 
 // Removes single outliers from the rates, as every command does (filters/rest/cleaned_rate.h). Repeated
 // values were removed when the capture was read.

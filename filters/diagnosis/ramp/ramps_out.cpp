@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
+#include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/ramp_tracker.h"
 #include "filters/units/told_time.h"
@@ -114,18 +114,13 @@ double rms(const std::vector<double>& angle) {
   return std::sqrt(square / static_cast<double>(angle.size()));
 }
 
-// Correction of a record by the daemon's tracker, by sample.
-Samples tracked(const Record& record, const RampSettings& settings) {
-  RampTracker tracker(settings);
-  const double usual_s = usual_step(record.time_s);
-  Samples correction(record.time_s.size());
-  for (std::size_t i = 0; i < correction.size(); ++i) {
-    const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
-    correction[i] = tracker.step({.measured_radps = record.rate_radps[i],
-                                  .rest_radps = record.error(i),
-                                  .dt_s = dt,
-                                  .missed_s = dt > 1.5 * usual_s ? dt - usual_s : 0.0});
-  }
+// Correction of a record by the daemon's code, by sample.
+Samples correction_by(const Effect& effect, const Record& record) {
+  Model model;
+  model.effects = {effect};
+  Samples correction = error_of(record);
+  const Samples left = compensated_error(record, model);
+  for (std::size_t i = 0; i < correction.size(); ++i) correction[i] -= left[i];
   return correction;
 }
 
@@ -181,7 +176,7 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, const Unbroken
   if (rms(settings.angle_rad) < kCertainTable * table.angle_error) return std::nullopt;
   RampFit fit;
   fit.found = {effect_of(part, comb, settings), chance_of(comb), 0.0, table.ratio()};
-  for (const Record& record : records) fit.correction.push_back(tracked(record, settings));
+  for (const Record& record : records) fit.correction.push_back(correction_by(fit.found.effect, record));
   return keeps_its_promise(records, fit, table) ? std::optional(std::move(fit)) : std::nullopt;
 }
 

@@ -2,24 +2,6 @@
 #include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {
-namespace {
-
-template <class Step>
-Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
-  Eigen::VectorXd means(static_cast<Eigen::Index>(grid.size()));
-  const double share = 1.0 / static_cast<double>(grid.fine);
-  for (const BlockRange& record : grid.records) {
-    for (std::size_t b = record.first; b < record.end; ++b) {
-      double sum = 0.0;
-      for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k)
-        sum += step(k, k == record.first * grid.fine);
-      means[static_cast<Eigen::Index>(b)] = sum * share;
-    }
-  }
-  return means;
-}
-
-}  // namespace
 
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel) {
   Shape shape(settings);

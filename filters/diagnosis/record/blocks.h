@@ -113,6 +113,20 @@ double white_variance(const std::vector<Record>& records);
 // Throws std::invalid_argument as diagnose() does.
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks = 4096);
 
+// Block means of step(k, starts) over the fine steps k; starts: of a record.
+template <class Step>
+Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
+  Eigen::VectorXd means(static_cast<Eigen::Index>(grid.size()));
+  for (const BlockRange& record : grid.records)
+    for (std::size_t b = record.first; b < record.end; ++b) {
+      double sum = 0.0;
+      for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k)
+        sum += step(k, k == record.first * grid.fine);
+      means[static_cast<Eigen::Index>(b)] = sum / static_cast<double>(grid.fine);
+    }
+  return means;
+}
+
 // Block means of a shape of a channel, or of the product of two shapes; restarts at each record.
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel);
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel,

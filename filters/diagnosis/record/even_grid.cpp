@@ -32,6 +32,18 @@ Samples error_of(const Record& record) {
   return error;
 }
 
+void bridge(std::span<double> values, std::size_t most) {
+  std::size_t last = values.size();  // known value
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    if (last < i && i - last <= most + 1)
+      for (std::size_t k = last + 1; k < i; ++k)
+        values[k] = values[last] + (values[i] - values[last]) * static_cast<double>(k - last) /
+                                       static_cast<double>(i - last);
+    last = i;
+  }
+}
+
 double variance_of(std::span<const double> values, double of_fewer) {
   const auto [sum, n] = finite_sum(values);
   if (n < 2.0) return of_fewer;

@@ -16,6 +16,9 @@ Samples on_even_grid(const Record& record, double sample_s, std::span<const doub
 // rate - reference by sample.
 Samples error_of(const Record& record);
 
+// Interpolates missing values linearly in gaps of up to `most` values, not at the ends.
+void bridge(std::span<double> values, std::size_t most);
+
 // Variance about the mean, ignoring NaN; of_fewer for fewer than two values.
 double variance_of(std::span<const double> values, double of_fewer = 0.0);
 

@@ -8,22 +8,10 @@
 #include <utility>
 
 #include "drivers/row_times/median.h"
+#include "filters/diagnosis/record/even_grid.h"
 
 namespace ifog {
 namespace {
-
-// Interpolates linearly between the steps on either side of those without a value; a jump would have an unrealistic
-// derivative.
-void bridge_holes(const std::vector<std::uint8_t>& known, std::span<double> means) {
-  std::size_t last = 0;
-  for (std::size_t k = 0; k < means.size(); ++k) {
-    if (known[k] == 0) continue;
-    for (std::size_t j = last + 1; j < k; ++j)
-      means[j] = means[last] +
-                 (means[k] - means[last]) * static_cast<double>(j - last) / static_cast<double>(k - last);
-    last = k;
-  }
-}
 
 // A channel is lost, not between its readings, if it has none for more than this many of their usual distances.
 constexpr double kLost = 3.0;
@@ -84,7 +72,6 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
   StepMeans out;
   auto& [means, power, read] = out;
   const std::size_t steps = starts.size() - 1;
-  std::vector<std::uint8_t> known(steps);
   bool any = false;  // steps before the first value use that value
   double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
@@ -99,12 +86,15 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
     const double mean = count > 0 ? sum / count : 0.0;
     if (count > 0) held = readings ? last : mean;
     if (count > 0 && !std::exchange(any, true)) std::ranges::fill(means, held);
-    known[k] = count > 0 || (holds && any && starts[k] < starts[k + 1]) ? 1 : 0;
-    means.push_back(held);
-    read.push_back(known[k] != 0 || !any || starts[k] == starts[k + 1] ? 1 : 0);
+    const bool empty = starts[k] == starts[k + 1], known = count > 0 || !any || (holds && !empty);
+    means.push_back(known ? held : std::nan(""));
+    read.push_back(known || empty ? 1 : 0);
     if (with_power) power.push_back(count ? std::max(0.0, square / count - mean * mean) : 0.0);
   }
-  bridge_holes(known, means);
+  // A jump between two readings would have an unrealistic derivative.
+  bridge(means, steps);
+  std::ranges::replace_if(
+      means, [](double mean) { return std::isnan(mean); }, held);
   use_bridges(read);
   return out;
 }

@@ -23,7 +23,9 @@ ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel,
   return settings;
 }
 
-double complexity_of_form(const Candidate& candidate) {
+}  // namespace
+
+double complexity(const Candidate& candidate) {
   switch (candidate.form) {
     case Form::kLinear:
       return 0.0;
@@ -47,8 +49,6 @@ double complexity_of_form(const Candidate& candidate) {
       return 4.0;
   }
 }
-
-}  // namespace
 
 double long_past_s(const BlockGrid& grid, const Candidate& candidate) {
   if (candidate.form != Form::kWarmUp) return 0.0;
@@ -96,8 +96,6 @@ Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate) {
   }
   return values;
 }
-
-double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
 
 Effect effect_of(const BlockData& data, const Candidate& candidate) {
   Effect effect;

@@ -20,9 +20,6 @@ constexpr double kShortestWarmUp_s = 10.0;
 constexpr double kHighest = 0.5;  // cycles per sample, highest frequency of a band power
 constexpr double kCentreInside =
     0.1;  // smallest distance of a transition's centre from the range's edge, as a share
-// Extra cost in twice the log-likelihood of less usual effects: a gradient compared with a temperature,
-// another axis, a product of two field components.
-constexpr double kBolder = 4.0;
 // An axis was turned if its rate reaches this share of the own axis's, and is not a copy of it.
 constexpr double kTurned = 0.05;
 constexpr double kPicture = 0.9;
@@ -45,14 +42,11 @@ Eigen::VectorXd means_of(const BlockData& data, std::size_t channel) {
 
 // A gradient acts by its value, change or lag; not by powers or vibration.
 void add_difference(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  const auto add = [&](Form form, double tau) {
-    found.push_back(candidate_of(form, channel, tau));
-    found.back().of_channel = kBolder;
-  };
-  add(Form::kLinear, 0.0);
+  found.push_back(candidate_of(Form::kLinear, channel));
   if (data.channels[channel].still) return;
   for (const Form form : {Form::kRate, Form::kLagged})
-    for (const double tau : time_constants(data.grid, form)) add(form, tau);
+    for (const double tau : time_constants(data.grid, form))
+      found.push_back(candidate_of(form, channel, tau));
 }
 
 // Once per turn (a field) and twice per turn (bending).
@@ -72,7 +66,6 @@ void add_other_axis(const BlockData& data, std::size_t channel, std::vector<Cand
   if (other.norm() < kTurned * own.norm() || std::abs(own.dot(other)) > kPicture * own.norm() * other.norm())
     return;
   found.push_back(candidate_of(Form::kLinear, channel));
-  found.back().of_channel = kBolder;
 }
 
 // The bias changes between two levels where the polarisation of the coil changes. Widths are shares of the
@@ -175,12 +168,11 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
 }
 
 // Product of two environmental channels that are not copies of each other.
-Candidate product_of(const BlockData& data, std::size_t one, std::size_t other) {
+Candidate product_of(std::size_t one, std::size_t other) {
   Candidate candidate;
   candidate.form = Form::kProduct;
   candidate.channel = std::min(one, other);
   candidate.with_channel = std::max(one, other);
-  if (of_one_vector(data.channels[one].name, data.channels[other].name)) candidate.of_channel = kBolder;
   return candidate;
 }
 
@@ -211,7 +203,7 @@ void add_through_temperature(const BlockData& data, std::vector<Candidate>& foun
     if (!may_be_factor(data, one) || !warm(one)) continue;
     for (std::size_t other = 0; other < data.channels.size(); ++other)
       if (may_be_factor(data, other) && !warm(other) && !data.channels[other].two_valued)
-        found.push_back(product_of(data, one, other));
+        found.push_back(product_of(one, other));
   }
 }
 }  // namespace
@@ -272,7 +264,7 @@ std::vector<Candidate> library(const BlockData& data) {
     else
       add_channel(data, channel, found);
   }
-  for (const auto& [gate, other] : switched(data)) found.push_back(product_of(data, gate, other));
+  for (const auto& [gate, other] : switched(data)) found.push_back(product_of(gate, other));
   add_through_temperature(data, found);
   if (data.reference >= 0) add_reference(data, found);
   if (data.grid.dwells) return found;
@@ -332,7 +324,7 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
     pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
   for (const auto& [gate, other] : switched(data))
-    pairs.push_back({candidate_of(Form::kLinear, gate), product_of(data, gate, other)});
+    pairs.push_back({candidate_of(Form::kLinear, gate), product_of(gate, other)});
   add_scales(data, pairs);
   return pairs;
 }
@@ -342,7 +334,7 @@ std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
   const bool of_axis = data.channels[channel].of_axis;
   if (!of_axis && !may_be_factor(data, channel)) return found;
   for (std::size_t other = 0; other < data.channels.size(); ++other)
-    if (other != channel && may_be_factor(data, other)) found.push_back(product_of(data, channel, other));
+    if (other != channel && may_be_factor(data, other)) found.push_back(product_of(channel, other));
   return found;
 }
 

@@ -29,7 +29,6 @@ struct Candidate {
   double period = 0.0;                  // of cosine, sine
   double centre = 0.0;                  // of a transition: channel value at its centre
   double half_width = 0.0;              // of a transition
-  double of_channel = 0.0;              // additional complexity of a derived channel
   FirstReading first_reading = FirstReading::kError;
   bool smoothed = false;  // time_constant_s is what the noise of the readings needs, and no estimate
 

@@ -41,16 +41,4 @@ Eigen::VectorXd means_of(const BlockData& data, const std::vector<Candidate>& ef
   return means;
 }
 
-std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
-  std::vector<int> fold(grid.size());
-  for (const BlockRange& record : grid.records) {
-    const std::size_t n = record.size();
-    for (std::size_t b = 0; b < n; ++b) {
-      const std::size_t piece = b * turns * static_cast<std::size_t>(folds) / n;
-      fold[record.first + b] = static_cast<int>(piece) % folds;
-    }
-  }
-  return fold;
-}
-
 }  // namespace ifog

@@ -27,7 +27,4 @@ Eigen::Index column_of(const BlockGrid& grid, std::size_t effect);
 // Means over the valid blocks: of the measurement, then of each effect for a coefficient of one.
 Eigen::VectorXd means_of(const BlockData& data, const std::vector<Candidate>& effects);
 
-// Fold of each block: short contiguous pieces, alternating, so that every fold covers the whole record.
-std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);
-
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/regression/harmonics.h"
+#include "filters/diagnosis/regression/noise_fit.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,6 @@
 
 #include "drivers/row_times/median.h"
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/linear/fourier.h"
 #include "filters/linear/least_squares.h"
 

@@ -8,8 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/diagnosis/regression/harmonics.h"
-
 namespace ifog {
 
 WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns,

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/report/before_and_after.h"
+#include "filters/diagnosis/report/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/series/finite_sum.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -26,7 +27,12 @@ void write_before_and_after(const std::vector<EvenError>& errors, double sample_
     weight.push_back(static_cast<double>(error.before->size()));
   }
   const auto add_mean = [&](SharedSamples EvenError::*of, std::map<std::string, double>& figures) {
-    if (const auto [sum, n] = sum_of(errors, of); n > 0.0) figures["bias_radps"] = sum / n;
+    double sum = 0.0, count = 0.0;
+    for (const EvenError& error : errors) {
+      const FiniteSum mine = finite_sum(*(error.*of));
+      sum += mine.sum, count += mine.count;
+    }
+    if (count > 0.0) figures["bias_radps"] = sum / count;
   };
   diagnosis.before = pooled(before, weight);
   diagnosis.after = pooled(written, weight);
@@ -55,27 +61,26 @@ constexpr double kMany = 100.0;  // an RMS of so many values is accurate to 7 %
 // With fewer means: standard errors by which an RMS may increase by chance.
 constexpr double kByChance = 1.5;
 
-struct Figure {
-  const char* key;
-  double means_s;  // 0: samples
+struct Growth {
+  double means_s, times, count;  // means_s: 0 for samples
 };
 
-constexpr std::array<Figure, 5> kFigures = {{{"residual_rms_radps", 0.0},
-                                             {"rms_0.1s_radps", 0.1},
-                                             {"rms_1s_radps", 1.0},
-                                             {"rms_10s_radps", 10.0},
-                                             {"rms_100s_radps", 100.0}}};
-
-// after / before; 0 if the report does not have the figure.
-double growth_of(const Diagnosis& diagnosis, const char* key) {
-  const auto before = diagnosis.before.find(key), after = diagnosis.after.find(key);
-  if (before == diagnosis.before.end() || after == diagnosis.after.end() || !(before->second > 0.0))
-    return 0.0;
-  return after->second / before->second;
-}
-
-double count_of(const Figure& figure, const Diagnosis& diagnosis, double samples) {
-  return figure.means_s > 0.0 ? samples / (diagnosis.sample_rate_hz * figure.means_s) : samples;
+// RMS figures that have increased. samples: number of samples.
+std::vector<Growth> growths_of(const Diagnosis& diagnosis, double samples) {
+  std::vector<Growth> found;
+  for (const auto& [key, means_s] : {std::pair{"residual_rms_radps", 0.0},
+                                     {"rms_0.1s_radps", 0.1},
+                                     {"rms_1s_radps", 1.0},
+                                     {"rms_10s_radps", 10.0},
+                                     {"rms_100s_radps", 100.0}}) {
+    const auto before = diagnosis.before.find(key), after = diagnosis.after.find(key);
+    if (before == diagnosis.before.end() || after == diagnosis.after.end() || !(before->second > 0.0))
+      continue;
+    const double times = after->second / before->second;
+    const double count = means_s > 0.0 ? samples / (diagnosis.sample_rate_hz * means_s) : samples;
+    if (times > kGrown) found.push_back({means_s, times, count});
+  }
+  return found;
 }
 
 }  // namespace
@@ -87,10 +92,9 @@ double samples_of(const std::vector<EvenError>& errors) {
 }
 
 bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
-  return std::ranges::any_of(kFigures, [&](const Figure& figure) {
-    const double count = count_of(figure, diagnosis, samples_of(errors));
-    const double most = count >= kMany ? kGrown : 1.0 + kByChance / std::sqrt(2.0 * std::max(count, 1.0));
-    return growth_of(diagnosis, figure.key) > most;
+  return std::ranges::any_of(growths_of(diagnosis, samples_of(errors)), [](const Growth& growth) {
+    return growth.count >= kMany ||
+           growth.times > 1.0 + kByChance / std::sqrt(2.0 * std::max(growth.count, 1.0));
   });
 }
 
@@ -98,13 +102,10 @@ std::string grown_in_words(const Diagnosis& diagnosis, double samples) {
   if (diagnosis.effects.empty()) return "";
   std::string sentence;
   bool by_chance = true;
-  for (const Figure& figure : kFigures) {
-    const double growth = growth_of(diagnosis, figure.key);
-    const double count = count_of(figure, diagnosis, samples);
-    if (growth <= kGrown) continue;
+  for (const auto& [means_s, times, count] : growths_of(diagnosis, samples)) {
     sentence += (sentence.empty() ? "" : "; ") +
-                (figure.means_s > 0.0 ? formatted("%.3g s means grow %.3g times", figure.means_s, growth)
-                                      : formatted("single samples grow %.3g times", growth));
+                (means_s > 0.0 ? formatted("%.3g s means grow %.3g times", means_s, times)
+                               : formatted("single samples grow %.3g times", times));
     by_chance &= count < kMany;
     if (count < kMany) sentence += formatted(", but there are %.0f of them", count);
   }

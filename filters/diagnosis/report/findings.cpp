@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/report/findings.h"
+#include "filters/diagnosis/report/report.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
-#include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
+#include "filters/effects/reach.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/units/told_time.h"
 
@@ -140,8 +140,10 @@ void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effect
 }
 
 // Chosen effects with parameters, their errors, and each one's part of the error by block.
-void add_effects(const BlockData& data, const SearchResult& found, const JointFit& joint,
-                 const std::string& axis, Findings& findings) {
+std::vector<Eigen::VectorXd> add_effects(const BlockData& data, const SearchResult& found,
+                                         const JointFit& joint, const std::string& axis,
+                                         std::vector<FoundEffect>& effects) {
+  std::vector<Eigen::VectorXd> parts;
   const BlockGrid& grid = data.grid;
   const Columns columns = design(data, candidates_of(found.chosen));
   const double total = variance_of(used_values(grid, grid.error));
@@ -169,23 +171,24 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     }
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
-    findings.parts.push_back(std::move(part));
-    findings.effects.push_back(std::move(effect));
+    parts.push_back(std::move(part));
+    effects.push_back(std::move(effect));
   }
+  return parts;
 }
 
-void add_alternatives(const BlockData& data, const SearchResult& found, Findings& findings) {
+void add_alternatives(const BlockData& data, const SearchResult& found, Diagnosis& diagnosis) {
   for (const Alternative& alternative : found.alternatives)
-    findings.pairs.push_back(
-        {{findings.effects[alternative.of].effect, effect_of(data, alternative.candidate)},
+    diagnosis.indistinguishable.push_back(
+        {{diagnosis.effects[alternative.of].effect, effect_of(data, alternative.candidate)},
          alternative.correlation,
          capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate)});
 }
 
 // On one heading the Earth's rate in a tilting axis cannot be distinguished from g-sensitivity: same
 // regressor.
-void add_earth_rate(Findings& findings) {
-  for (const FoundEffect& each : findings.effects) {
+void add_earth_rate(Diagnosis& diagnosis) {
+  for (const FoundEffect& each : diagnosis.effects) {
     const Effect& effect = each.effect;
     if (effect.form != name_of(Form::kEarthRate)) continue;
     Indistinguishable pair;
@@ -196,20 +199,22 @@ void add_earth_rate(Findings& findings) {
         "the same capture with the heading reversed: the horizontal part of the Earth's rate changes its "
         "sign, g-sensitivity does not; its vertical part, along the gyro's own axis, only an acceleration "
         "without tilt tells";
-    findings.pairs.push_back(std::move(pair));
+    diagnosis.indistinguishable.push_back(std::move(pair));
   }
 }
 
 }  // namespace
 
-Findings findings_of(const BlockData& data, const SearchResult& found, const JointFit& joint,
-                     const std::string& axis) {
-  Findings findings;
-  add_effects(data, found, joint, axis, findings);
-  follow_known_curves(data, findings.effects);
-  add_alternatives(data, found, findings);
-  add_earth_rate(findings);
-  return findings;
+std::vector<Eigen::VectorXd> write_findings(const BlockData& data, const SearchResult& found,
+                                            const JointFit& joint, const std::string& axis,
+                                            Diagnosis& diagnosis) {
+  diagnosis.effects.clear();
+  diagnosis.indistinguishable.clear();
+  std::vector<Eigen::VectorXd> parts = add_effects(data, found, joint, axis, diagnosis.effects);
+  follow_known_curves(data, diagnosis.effects);
+  add_alternatives(data, found, diagnosis);
+  add_earth_rate(diagnosis);
+  return parts;
 }
 
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/report/noise.h"
+#include "filters/diagnosis/report/report.h"
 
 #include <algorithm>
 #include <cmath>

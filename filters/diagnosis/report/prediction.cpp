@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "filters/diagnosis/regression/candidates.h"
-#include "filters/diagnosis/residual/hysteresis.h"
+#include "filters/diagnosis/residual/residual.h"
 
 namespace ifog {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/report/written_model.h"
+#include "filters/diagnosis/report/report.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "filters/diagnosis/checks/cross_validation.h"
+#include "filters/diagnosis/checks/checks.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
@@ -17,10 +17,17 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kPieces = 2000;
-
-double error_in_means(std::span<const double> error) {
-  return variance_of(means_over(error, std::max<std::size_t>(1, error.size() / kPieces)));
+// Variance that the daemon's correction leaves in means over 1/pieces of each record, summed.
+double left_in(const std::vector<Record>& records, const Diagnosis& diagnosis, double sample_s,
+               std::size_t pieces) {
+  Model model;
+  add_to_model(diagnosis, "", model);
+  double sum = 0.0;
+  for (const Record& record : records) {
+    const Samples error = on_even_grid(record, sample_s, compensated_error(record, model));
+    sum += variance_of(means_over(error, std::max<std::size_t>(1, error.size() / pieces)));
+  }
+  return sum;
 }
 
 }  // namespace
@@ -134,56 +141,31 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
   }
 }
 
-namespace {
-
-// Model of the effects that the daemon corrects. change: gets an effect's index and may change it; false leaves it out.
-template <class Change>
-Model model_of(const Diagnosis& diagnosis, const Change& change) {
-  Model model;
-  for (std::size_t i = 0; i < diagnosis.effects.size(); ++i) {
-    if (diagnosis.effects[i].effect.shown_only) continue;
-    Effect effect = diagnosis.effects[i].effect;
-    effect.axis.clear();
-    if (change(i, effect)) model.effects.push_back(std::move(effect));
-  }
-  model.ranges = diagnosis.ranges;
-  return model;
-}
-
-}  // namespace
-
 std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
                                                std::size_t candidates, double sample_s) {
+  constexpr std::size_t kPieces = 2000;
   double least = std::numeric_limits<double>::infinity();
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::optional<Form> form = form_named(diagnosis.effects[i].effect.form);
     if (!form || !carries_over(*form) || diagnosis.effects[i].effect.shown_only) continue;
-    const Model model = model_of(diagnosis, [&](std::size_t at, const Effect&) { return at != i; });
-    double without = 0.0;
-    for (const Record& record : records)
-      without += error_in_means(on_even_grid(record, sample_s, compensated_error(record, model)));
-    if (without >= least) continue;
-    least = without;
-    found = i;
+    Diagnosis without = diagnosis;
+    without.effects[i].effect.shown_only = true;
+    const double left = left_in(records, without, sample_s, kPieces);
+    if (left < least) least = left, found = i;
   }
   return found;
 }
 
 double smoothing_s(const std::vector<Record>& records, const Diagnosis& diagnosis, std::size_t at,
                    double most_s, double sample_s) {
-  const std::string name{time_constant_name(diagnosis.effects[at].effect)};
-  double least = std::numeric_limits<double>::infinity(),
-         best_s = parameter(diagnosis.effects[at].effect, name);
-  for (double trial_s = best_s; trial_s <= most_s; trial_s *= 1.5) {
-    const Model model = model_of(diagnosis, [&](std::size_t i, Effect& effect) {
-      for (ModelParameter& each : effect.parameters)
-        if (i == at && each.name == name) each.value = trial_s;
-      return true;
-    });
-    double left = 0.0;
-    for (const Record& record : records)
-      left += variance_of(on_even_grid(record, sample_s, compensated_error(record, model)));
+  const std::string_view name = time_constant_name(diagnosis.effects[at].effect);
+  Diagnosis trial = diagnosis;
+  double& trial_s =
+      std::ranges::find(trial.effects[at].effect.parameters, name, &ModelParameter::name)->value;
+  double least = std::numeric_limits<double>::infinity(), best_s = trial_s;
+  for (; trial_s <= most_s; trial_s *= 1.5) {
+    const double left = left_in(records, trial, sample_s, SIZE_MAX);
     if (left < least) least = left, best_s = trial_s;
   }
   return best_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/residual/dead_zone.h"
+#include "filters/diagnosis/residual/residual.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,15 +125,6 @@ Explained explained_by_crossings(const std::vector<Turns>& records, double least
   return all;
 }
 
-struct DeadZone {
-  double half_width = 0.0;  // rad/s
-  double half_width_error = 0.0;
-  double coefficient = 0.0;  // error / rate inside; -1 if no rotation is sensed
-  double coefficient_error = 0.0;
-  double ratio = 0.0;  // gain of twice the log-likelihood
-  double p_value = 1.0;
-};
-
 struct ZoneWidth {
   double half_width = 0.0, gain = 0.0;
 };
@@ -146,10 +137,11 @@ std::vector<ZoneWidth> widths_between(const std::vector<Turns>& records, double 
   return tried;
 }
 
-// rates: true rates on the grid of the errors, by record, NaN missing; white_variance: of a sample.
-std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
-                                       const std::vector<Samples>& rates, double white_variance,
-                                       double significance) {
+// rates: true rates on the grid of the errors, by record, NaN missing; white_variance: of a sample. The coefficient is error /
+// rate inside, -1 if no rotation is sensed.
+std::optional<FoundEffect> find_dead_zone(const std::vector<EvenError>& errors,
+                                          const std::vector<Samples>& rates, double white_variance,
+                                          double significance) {
   std::vector<Turns> records;
   double most = 0.0;
   for (std::size_t r = 0; r < errors.size(); ++r) {
@@ -165,7 +157,6 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const double widest = kWidestZone * most, least = kOwnNoise * noise_of(records, widest);
   const double narrowest = std::max(least, kLeastWidth * most);
   if (!(white_variance > 0.0) || !(narrowest < widest)) return std::nullopt;
-  DeadZone zone;
   const ZoneWidth coarse =
       std::ranges::max(widths_between(records, least, narrowest, widest, kFactor), {}, &ZoneWidth::gain);
   if (!(coarse.gain > 0.0)) return std::nullopt;
@@ -175,33 +166,25 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const ZoneWidth best = std::ranges::max(tried, {}, &ZoneWidth::gain);
   // True if twice the log-likelihood is within one of the maximum.
   const auto close = [&](const ZoneWidth& each) { return each.gain > best.gain - white_variance; };
-  zone.half_width = best.half_width;
-  zone.half_width_error =
+  const double half_width_error =
       0.5 * (std::find_if(tried.rbegin(), tried.rend(), close)->half_width -
              std::ranges::find_if(tried, close)->half_width + best.half_width * (step - 1.0));
-  zone.ratio = best.gain / white_variance;
+  FoundEffect zone;
+  zone.likelihood_ratio = best.gain / white_variance;
   const double tries =
       independent_columns(static_cast<std::size_t>(std::log(widest / narrowest) / std::log(kFactor)));
   // The width is a second parameter.
-  zone.p_value = std::min(1.0, kProfiled * chi_squared_above(zone.ratio, 2.0) * tries);
+  zone.p_value = std::min(1.0, kProfiled * chi_squared_above(zone.likelihood_ratio, 2.0) * tries);
   if (zone.p_value > kShare * significance) return std::nullopt;
-  const Explained inside = explained_by(records, least, zone.half_width);
-  zone.coefficient = inside.product / inside.square;
-  zone.coefficient_error = std::sqrt(white_variance / inside.square);
-  const Explained crossings = explained_by_crossings(records, least, zone.half_width);
+  const Explained inside = explained_by(records, least, best.half_width);
+  const Explained crossings = explained_by_crossings(records, least, best.half_width);
   if (!inside.nearly_whole(white_variance) || !crossings.nearly_whole(white_variance) ||
       crossings.gain < kWithoutOne * white_variance)
     return std::nullopt;
+  zone.effect.parameters = {
+      {"coefficient", inside.product / inside.square, std::sqrt(white_variance / inside.square), ""},
+      {std::string(kHalfWidth), best.half_width, half_width_error, "rad/s"}};
   return zone;
-}
-
-// Error that the zone causes, by sample; zero where the rate is missing.
-Samples hidden_by(const DeadZone& zone, std::span<const double> rate) {
-  Samples hidden;
-  hidden.reserve(rate.size());
-  for (const double each : rate)
-    hidden.push_back(std::abs(each) < zone.half_width ? zone.coefficient * each : 0.0);
-  return hidden;
 }
 
 }  // namespace
@@ -212,25 +195,24 @@ std::optional<FoundEffect> take_out_dead_zone(const std::vector<Record>& records
   std::vector<Samples> rates;
   for (const Record& record : records)
     rates.push_back(on_even_grid(record, grid.sample_s, record.reference_radps));
-  const auto zone = find_dead_zone(errors, rates, grid.white_variance, significance);
-  if (!zone) return std::nullopt;
-  FoundEffect found;
-  Effect& effect = found.effect;
+  std::optional<FoundEffect> found = find_dead_zone(errors, rates, grid.white_variance, significance);
+  if (!found) return found;
+  Effect& effect = found->effect;
   effect.form = name_of(Form::kDeadZone);
   effect.channel = channel;
-  effect.parameters = {{"coefficient", zone->coefficient, zone->coefficient_error, coefficient_unit(effect)},
-                       {std::string(kHalfWidth), zone->half_width, zone->half_width_error, "rad/s"}};
+  effect.parameters[0].unit = coefficient_unit(effect);
   effect.meaning = meaning_of(effect);
-  found.p_value = zone->p_value;
-  found.likelihood_ratio = zone->ratio;
   double explained = 0.0, total = 0.0;
   for (std::size_t r = 0; r < errors.size(); ++r) {
-    const Samples hidden = hidden_by(*zone, rates[r]);
+    // Error that the zone causes; zero where the rate is missing.
+    Samples hidden(rates[r]);
+    for (double& rate : hidden)
+      rate = std::abs(rate) < effect.parameters[1].value ? effect.parameters[0].value * rate : 0.0;
     explained += variance_of(hidden);
     total += variance_of(*errors[r].before);
     take_out(hidden, r, grid, errors[r]);
   }
-  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  found->variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
   return found;
 }
 

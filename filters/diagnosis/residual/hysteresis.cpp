@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/residual/hysteresis.h"
+#include "filters/diagnosis/residual/residual.h"
 
 #include <algorithm>
 #include <array>
@@ -47,21 +47,12 @@ std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std:
 }  // namespace
 
 Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, double half_width) {
-  const BlockGrid& grid = data.grid;
   const std::vector<double>& values = data.channels[channel].values;
-  Eigen::VectorXd loop(static_cast<Eigen::Index>(grid.size()));
-  for (const BlockRange& record : grid.records) {
-    double play = values[grid.fine_steps(record).first];
-    for (std::size_t b = record.first; b < record.end; ++b) {
-      double sum = 0.0;
-      for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k) {
-        play = std::clamp(play, values[k] - half_width, values[k] + half_width);
-        sum += play - values[k];
-      }
-      loop[static_cast<Eigen::Index>(b)] = sum / static_cast<double>(grid.fine);
-    }
-  }
-  return loop;
+  double play = 0.0;
+  return block_means(data.grid, [&](std::size_t k, bool starts) {
+    play = starts ? values[k] : std::clamp(play, values[k] - half_width, values[k] + half_width);
+    return play - values[k];
+  });
 }
 
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/residual/unexplained.h"
+#include "filters/diagnosis/residual/residual.h"
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +176,8 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
                           const std::vector<FoundEffect>& of_samples, const NoiseFit& noise,
                           const BlockGrid& grid, double significance,
                           const std::vector<NoiseChangeIn>& noise_changes) {
-  const EvenError& longest = longest_of(errors);
+  const EvenError& longest =
+      *std::ranges::max_element(errors, {}, [](const EvenError& error) { return error.before->size(); });
   const double period_s = grid.sample_s, start_s = longest.origin.in_s(longest.start_s);
   Unexplained found;
   std::vector<SpectralLine> peaks;

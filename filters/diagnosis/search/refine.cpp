@@ -18,38 +18,41 @@ constexpr int kBits = 11;
 constexpr double kEdge = 0.05;  // of the range: smallest distance of a transition's centre from its edges
 constexpr double kNarrowest = 0.02;  // of the range
 
-// Brent's minimum of minus the log-likelihood as a function of a value in [low, high]; `with` makes the
-// columns.
-template <class With>
-double likeliest(const BlockGrid& grid, const NoiseShape& shape, double low, double high, const With& with) {
+// Sets one parameter of model[at] to its most likely value in [low, high], in its logarithm if `logarithmic`.
+void set_likeliest(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
+                   std::size_t at, double Candidate::*which, double low, double high, bool logarithmic) {
+  if (!(low < high)) {
+    model[at].*which = high;
+    return;
+  }
+  if (logarithmic) low = std::log(low), high = std::log(high);
+  const auto value_of = [&](double x) { return logarithmic ? std::exp(x) : x; };
+  Columns columns = design(data, model);
+  const auto lacking = [&](double x) {
+    Candidate trial = model[at];
+    trial.*which = value_of(x);
+    columns.col(column_of(data.grid, at)) = regressor(data, trial);
+    return -fit_whitened(data.grid, shape, columns).log_likelihood();
+  };
   std::uintmax_t most_evaluations = 30;
-  const auto lacking = [&](double value) { return -fit_whitened(grid, shape, with(value)).log_likelihood(); };
-  return boost::math::tools::brent_find_minima(lacking, low, high, kBits, most_evaluations).first;
+  model[at].*which =
+      value_of(boost::math::tools::brent_find_minima(lacking, low, high, kBits, most_evaluations).first);
 }
 
 void refine_transition(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                        std::size_t at) {
-  Columns columns = design(data, model);
-  const Eigen::Index place = column_of(data.grid, at);
-  const auto best = [&](double Candidate::*which, double low, double high) {
-    const auto with = [&](double value) -> const Columns& {
-      Candidate trial = model[at];
-      trial.*which = value;
-      columns.col(place) = regressor(data, trial);
-      return columns;
-    };
-    model[at].*which = low < high ? likeliest(data.grid, shape, low, high, with) : high;
-  };
   const FineChannel& channel = data.channels[model[at].channel];
   const double span = channel.high - channel.low;
   for (int round = 0; round < 3; ++round) {
     const Candidate now = model[at];
-    best(&Candidate::centre, std::max(channel.low + kEdge * span, now.centre - now.half_width),
-         std::min(channel.high - kEdge * span, now.centre + now.half_width));
+    set_likeliest(data, shape, model, at, &Candidate::centre,
+                  std::max(channel.low + kEdge * span, now.centre - now.half_width),
+                  std::min(channel.high - kEdge * span, now.centre + now.half_width), false);
     // Only widths with both levels visible, even if a wider one is slightly more likely.
     const double centre = model[at].centre;
-    best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
-         std::min({now.half_width * 2.0, centre - channel.low, channel.high - centre}));
+    set_likeliest(data, shape, model, at, &Candidate::half_width,
+                  std::max(kNarrowest * span, now.half_width / 2.0),
+                  std::min({now.half_width * 2.0, centre - channel.low, channel.high - centre}), false);
   }
 }
 
@@ -63,7 +66,6 @@ void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Ca
     refine(data, shape, model, at);
 }
 
-// In the logarithm of the time constant.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which) {
   const Form form = model[at].form;
@@ -74,16 +76,7 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
   const double now = model[at].*which;
   const double high = std::min(std::max(now * 2.5, least), most);
-  const double low = std::min(std::max(now / 2.5, least), high);
-  Columns columns = design(data, model);
-  const Eigen::Index place = column_of(data.grid, at);
-  const auto with = [&](double log_tau) -> const Columns& {
-    Candidate trial = model[at];
-    trial.*which = std::exp(log_tau);
-    columns.col(place) = regressor(data, trial);
-    return columns;
-  };
-  model[at].*which = std::exp(likeliest(data.grid, shape, std::log(low), std::log(high), with));
+  set_likeliest(data, shape, model, at, which, std::min(std::max(now / 2.5, least), high), high, true);
 }
 
 namespace {

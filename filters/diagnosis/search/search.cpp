@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "filters/diagnosis/checks/cross_validation.h"
+#include "filters/diagnosis/checks/checks.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/distributions/chi_squared.h"
@@ -24,6 +24,8 @@ constexpr double kTrialFactor = 1.3;      // the noise needs no higher precision
 constexpr double kShareOfChannels = 0.7;  // share of the significance; the rest is for steps
 constexpr double kAlike = 0.98;           // sufficient correlation of the whitened regressors
 constexpr double kImpossible = -1e300;    // score
+// further effects on a rate table: powers and products of the scale factor
+constexpr std::size_t kMoreOnDwells = 4;
 
 bool has_line(std::span<const Candidate> model, std::size_t channel) {
   return std::ranges::any_of(
@@ -39,8 +41,13 @@ std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
 // bounded, so the search ends.
 class EffectSearch {
  public:
-  EffectSearch(const BlockData& data, const SearchOptions& options)
-      : data_(data), options_(options), scan_(data, library(data)), laws_(natural_pairs(data)) {
+  EffectSearch(const BlockData& data, const DiagnoseOptions& options, const NoiseShape* noise)
+      : data_(data),
+        options_(options),
+        start_(noise),
+        most_effects_(options.most_effects + (data.grid.dwells ? kMoreOnDwells : 0)),
+        scan_(data, library(data)),
+        laws_(natural_pairs(data)) {
     scan_.pair(laws_);
   }
 
@@ -141,7 +148,7 @@ class EffectSearch {
 
   [[nodiscard]] NoiseFit first_noise(const std::vector<Candidate>& model) const {
     const Columns columns = design(data_, model);
-    return options_.noise ? fit_noise(data_.grid, columns, *options_.noise) : fit_noise(data_.grid, columns);
+    return start_ ? fit_noise(data_.grid, columns, *start_) : fit_noise(data_.grid, columns);
   }
 
   // First fits what every gyro has, before the noise model absorbs it: scale factor, misalignment,
@@ -188,8 +195,8 @@ class EffectSearch {
   }
 
   void improve() {
-    while (model_.effects.size() < options_.most_effects) {
-      if (options_.progress) options_.progress(model_.effects.size(), options_.most_effects + 1);
+    while (model_.effects.size() < most_effects_) {
+      if (options_.progress) options_.progress(model_.effects.size(), most_effects_ + 1);
       if (!add_one()) break;
       revise();
     }
@@ -319,7 +326,9 @@ class EffectSearch {
   }
 
   const BlockData& data_;
-  const SearchOptions& options_;
+  const DiagnoseOptions& options_;
+  const NoiseShape* start_;
+  std::size_t most_effects_;
   Scan scan_;
   std::vector<NaturalPair> laws_;
   FittedModel model_;
@@ -354,8 +363,8 @@ void fit_coefficients(const BlockData& data, SearchResult& found) {
   }
 }
 
-SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
-  return EffectSearch(data, options).run();
+SearchResult search_effects(const BlockData& data, const DiagnoseOptions& options, const NoiseShape* noise) {
+  return EffectSearch(data, options, noise).run();
 }
 
 }  // namespace ifog

@@ -4,9 +4,7 @@
 // held-out blocks.
 #pragma once
 
-#include <functional>
-#include <optional>
-
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/regression/design.h"
 
 namespace ifog {
@@ -39,14 +37,8 @@ Eigen::VectorXd coefficients_of(const std::vector<Chosen>& chosen);
 // Fits the coefficients of the chosen effects under the noise found.
 void fit_coefficients(const BlockData& data, SearchResult& found);
 
-struct SearchOptions {
-  double significance = 0.01;
-  std::size_t most_effects = 8;
-  std::function<void(std::size_t, std::size_t)> progress;
-  std::optional<NoiseShape> noise;  // start value, from an earlier search
-};
-
-// data: with channels from with_reconstructed_channels().
-SearchResult search_effects(const BlockData& data, const SearchOptions& options);
+// data: with channels from with_reconstructed_channels(). noise: start value, of an earlier search, or nullptr.
+SearchResult search_effects(const BlockData& data, const DiagnoseOptions& options,
+                            const NoiseShape* noise = nullptr);
 
 }  // namespace ifog

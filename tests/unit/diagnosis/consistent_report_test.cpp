@@ -5,9 +5,8 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/regression/uncertainty.h"
-#include "filters/diagnosis/report/before_and_after.h"
-#include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/prediction.h"
+#include "filters/diagnosis/report/report.h"
 #include "filters/diagnosis/search/search.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/test.h"
@@ -172,10 +171,9 @@ Fitted fitted(const Trial& trial) {
   fit_coefficients(data, found);
   Fitted fit;
   fit.joint = settle(data, found);
-  Findings findings = findings_of(data, found, fit.joint, "");
-  fit.diagnosis.effects = findings.effects;
-  fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, data.grid, 1);
-  fit.diagnosis.ranges = ranges_of(data, findings.effects);
+  write_findings(data, found, fit.joint, "", fit.diagnosis);
+  fit.diagnosis.covariance = covariance_of(fit.diagnosis.effects, fit.joint, data.grid, 1);
+  fit.diagnosis.ranges = ranges_of(data, fit.diagnosis.effects);
   fit.diagnosis.noise_posterior = fit.joint.noise;
   return fit;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several captures compared coefficient by coefficient, and what is reported when much stays unexplained.
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/report/left_out.h"
+#include "filters/diagnosis/report/report.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/test.h"

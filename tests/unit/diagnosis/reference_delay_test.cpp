@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The delay of a reference that was logged late is estimated to a part of a sample and corrected.
-#include "filters/diagnosis/cleaning/reference_delay.h"
 #include "filters/diagnosis/cleaning/cross_delay.h"
+#include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/test.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The room `residual`: what effects leave, as lines, as lines that move, and in words.
+#include "filters/diagnosis/residual/residual.h"
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/periodogram.h"
-#include "filters/diagnosis/residual/unexplained.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
 #include "tests/unit/test.h"
