@@ -60,7 +60,6 @@ namespace {
 constexpr double kOverOthers = 30.0;
 // A ramp is not detectable in slower sensors.
 constexpr double kQuickSensor_hz = 20.0;
-constexpr double kCertainTable = 3.0;  // standard errors of the table
 
 // Remark about the lines of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
@@ -173,7 +172,6 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, const Unbroken
   const RampSettings settings{comb.cycles_per_rad, cycle_of(table.angle_rad),
                               std::sqrt(table.left() / table.samples * part.sample_s()),
                               unseen_walk(part, comb)};
-  if (rms(settings.angle_rad) < kCertainTable * table.angle_error) return std::nullopt;
   RampFit fit;
   fit.found = {effect_of(part, comb, settings), chance_of(comb), 0.0, table.ratio()};
   for (const Record& record : records) fit.correction.push_back(correction_by(fit.found.effect, record));

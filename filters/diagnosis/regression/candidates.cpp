@@ -17,7 +17,6 @@ constexpr double kGridFactor = 2.5;  // ratio of time constants; neighbours corr
 constexpr double kBlocksOfRate = 2.0;
 // Shorter ones are start-up effects of the record.
 constexpr double kShortestWarmUp_s = 10.0;
-constexpr double kHighest = 0.5;  // cycles per sample, highest frequency of a band power
 constexpr double kCentreInside =
     0.1;  // smallest distance of a transition's centre from the range's edge, as a share
 // An axis was turned if its rate reaches this share of the own axis's, and is not a copy of it.
@@ -98,8 +97,6 @@ void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candi
   if (!source.vibrates() || source.period > 0.0) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
     found.push_back(candidate_of(Form::kBandPower, channel, tau));
-  if (source.power.empty())
-    found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
 }
 
 void add_channel(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
@@ -280,16 +277,6 @@ std::vector<Candidate> library(const BlockData& data) {
 }
 
 namespace {
-// Two band powers with different weights at high frequencies form the power of one band: a resonance of the
-// coil responds to one machine only.
-void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
-  const FineChannel& source = data.channels[channel];
-  if (!source.vibrates() || !source.power.empty()) return;
-  for (const double tau : time_constants(data.grid, Form::kBandPower))
-    pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
-                     candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
-}
-
 // Scale factor with an unknown zero: at that value of the channel neither term is visible alone.
 void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
   if (data.reference < 0) return;
@@ -318,9 +305,7 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
     std::vector<Candidate> swings;
     if (source.period > 0.0 && source.varies) add_angle(data, channel, swings);
     for (std::size_t i = 0; i + 1 < swings.size(); i += 2) pairs.push_back({swings[i], swings[i + 1]});
-    if (source.moves && source.varies) add_band(data, channel, pairs);
     if (!may_be_factor(data, channel) || source.two_valued) continue;
-    if (!source.moves) add_band(data, channel, pairs);
     pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
   for (const auto& [gate, other] : switched(data))

@@ -155,35 +155,32 @@ std::vector<Scored> Scan::steps(const FittedModel& base) const {
   const BlockGrid& grid = data_.grid;
   std::vector<Scored> found;
   const auto n = static_cast<double>(grid.used());
-  for (const double share : {1.0, 0.05}) {
-    NoiseShape shape = base.noise.shape;
-    shape.walk *= share;
-    const Projected p = project(base.effects, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
-    for (std::size_t r = 0; r < grid.records.size(); ++r) {
-      const Eigen::Index from = grid.records[r].row();
-      const Eigen::Index length = grid.records[r].rows();
-      const Eigen::VectorXd h = answer_to_step(grid, shape, grid.records[r]);
-      Eigen::VectorXd energy(length);
-      double sum = 0.0;
-      for (Eigen::Index k = 0; k < length; ++k) energy[k] = sum += h[k] * h[k];
-      Scored best;
-      for (Eigen::Index at = 4; at + 4 < length; ++at) {
-        const Eigen::Index rest = length - at;
-        const double xy = h.head(rest).dot(p.y.segment(from + at, rest));
-        // The constant is projected out of the measurement but not yet out of the step.
-        const double xx =
-            energy[rest - 1] * std::max(0.05, shape.walk > 0.0 ? 1.0 : double(at) / double(length));
-        const double left = std::max(p.square - xy * xy / xx, 1e-12 * p.square);
-        const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - base.noise.log_likelihood);
-        if (ratio <= best.ratio) continue;
-        best.ratio = ratio;
-        best.shape = shape;
-        best.candidate.form = Form::kStep;
-        best.candidate.record = r;
-        best.candidate.time_s = grid.time_s[static_cast<std::size_t>(from + at)] - 0.5 * grid.block_s;
-      }
-      if (best.ratio > 0.0) found.push_back(best);
+  const NoiseShape& shape = base.noise.shape;
+  const Projected p = project(base.effects, shape, Columns(static_cast<Eigen::Index>(grid.size()), 0));
+  for (std::size_t r = 0; r < grid.records.size(); ++r) {
+    const Eigen::Index from = grid.records[r].row();
+    const Eigen::Index length = grid.records[r].rows();
+    const Eigen::VectorXd h = answer_to_step(grid, shape, grid.records[r]);
+    Eigen::VectorXd energy(length);
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < length; ++k) energy[k] = sum += h[k] * h[k];
+    Scored best;
+    for (Eigen::Index at = 4; at + 4 < length; ++at) {
+      const Eigen::Index rest = length - at;
+      const double xy = h.head(rest).dot(p.y.segment(from + at, rest));
+      // The constant is projected out of the measurement but not yet out of the step.
+      const double xx =
+          energy[rest - 1] * std::max(0.05, shape.walk > 0.0 ? 1.0 : double(at) / double(length));
+      const double left = std::max(p.square - xy * xy / xx, 1e-12 * p.square);
+      const double ratio = 2.0 * (-0.5 * n * std::log(left / n) - base.noise.log_likelihood);
+      if (ratio <= best.ratio) continue;
+      best.ratio = ratio;
+      best.shape = shape;
+      best.candidate.form = Form::kStep;
+      best.candidate.record = r;
+      best.candidate.time_s = grid.time_s[static_cast<std::size_t>(from + at)] - 0.5 * grid.block_s;
     }
+    if (best.ratio > 0.0) found.push_back(best);
   }
   return found;
 }

@@ -269,41 +269,6 @@ TEST(Grammar, AScaleFactorOverTheCoilsTemperatureLags) {
   EXPECT_LT(found.after.at("rms_10s_radps"), 0.3 * found.before.at("rms_10s_radps"));
 }
 
-// Two machines; the coil answers the slower one alone. No band power of one time constant tells them apart, a
-// pair of two does: the slower one's power is half the square of its amplitude.
-TEST(Grammar, APairOfBandPowersIsThePowerOfOneMachine) {
-  Sensor s(32);
-  std::vector<double> total, power;
-  for (std::size_t i = 0; i < s.time.size(); ++i) {
-    const double t = s.time[i];
-    const double slower = 1.0 + 0.9 * std::sin(2.0 * M_PI * t / 310.0);
-    const double quicker = 1.5 + 1.3 * std::sin(2.0 * M_PI * t / 190.0 + 1.0);
-    total.push_back(slower * std::sin(2.0 * M_PI * 0.61 * t) + quicker * std::sin(2.0 * M_PI * 2.07 * t));
-    power.push_back(0.5 * slower * slower);
-  }
-  s.columns.emplace_back("accel_x_mps2", total);
-  const BlockData data = cut_to_blocks({s.record()});
-  const auto rows = static_cast<Eigen::Index>(data.grid.size());
-  Eigen::VectorXd truth(rows);
-  for (Eigen::Index b = 0; b < rows; ++b) truth[b] = power[static_cast<std::size_t>(b) * data.grid.fine];
-  const auto left_by = [&](const std::vector<Candidate>& effects) {
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(rows, 1 + static_cast<Eigen::Index>(effects.size()));
-    for (std::size_t i = 0; i < effects.size(); ++i)
-      columns.col(1 + static_cast<Eigen::Index>(i)) = regressor(data, effects[i]);
-    const Eigen::VectorXd left = truth - columns * columns.colPivHouseholderQr().solve(truth).eval();
-    return left.squaredNorm() / (truth.array() - truth.mean()).matrix().squaredNorm();
-  };
-  double both = 1.0;
-  double alone = 1.0;
-  for (const NaturalPair& pair : natural_pairs(data)) {
-    if (pair.first.form != Form::kBandPower) continue;
-    both = std::min(both, left_by({pair.first, pair.second}));
-    alone = std::min({alone, left_by({pair.first}), left_by({pair.second})});
-  }
-  EXPECT_LT(both, 0.1);
-  EXPECT_GT(alone, 0.3);
-}
-
 // Never the same sample of a swing in the zone.
 double swing(double t) { return 0.02 * std::sin(2.0 * M_PI * t / 37.31); }
 
